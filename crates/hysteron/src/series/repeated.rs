@@ -6,8 +6,8 @@ use std::ops::Range;
 
 /// Fewer equal rows in a row may be chance.
 const SHORTEST: usize = 8;
-/// Where a block begins again, the series go back by more than so many times their usual steps. A
-/// cycle that repeats exactly goes on smoothly.
+/// Where a block begins again, the series go back by more than so many times their usual steps, and
+/// where it ends they go forward. A cycle that repeats exactly goes on smoothly, also after a gap.
 const SEAM: f64 = 3.0;
 
 /// A block of rows, and the rows before it that are the same.
@@ -43,8 +43,12 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
         }
         let same = (0..len - n).take_while(|k| row(earlier + k) == row(n + k));
         let count = same.count();
-        found.push((n..n + count, earlier..earlier + count));
+        let (again, of) = (n..n + count, earlier..earlier + count);
         n += count;
+        // The rows after it go on where the earlier ones ended, or elsewhere.
+        if of.end >= again.start || n >= len || is_seam(n) {
+            found.push((again, of));
+        }
     }
     found
 }
