@@ -32,10 +32,17 @@ fn no_harm(pair: &[Recording; 2]) {
             match advised(&dirty, second, &fit()) {
                 Ok(Came::To(error)) => {
                     let allowed = allowed(fault, pair, clean, seed).unwrap();
-                    let what = format!("{fault:?} {seed}: {error:.3}, allowed {allowed:.3}");
-                    assert!(error <= allowed, "{what}, clean {clean:.3}");
+                    let what = format!("{}, seed {seed}: {error:.3}", fault.name());
+                    assert!(
+                        error <= allowed,
+                        "{what}, allowed {allowed:.3}, clean {clean:.3}"
+                    );
                 }
-                Ok(Came::Refused(_)) | Err(_) => refused += 1,
+                Ok(Came::Refused(why)) => {
+                    assert!(!why.is_empty());
+                    refused += 1;
+                }
+                Err(_) => refused += 1,
             }
         }
         // To refuse all would keep the bound, too.

@@ -19,6 +19,15 @@ impl Change {
         }
     }
 
+    /// The input with the change.
+    pub(super) fn input<'a>(&'a self, work: &'a Recording) -> &'a [f64] {
+        match self {
+            Self::Input(values) => values,
+            Self::Output(_) => &work.input,
+            Self::Resampled(recording) => &recording.input,
+        }
+    }
+
     /// The samples that differ; all, if the times are others.
     pub(super) fn samples(&self, work: &Recording) -> Vec<usize> {
         let (old, new) = match self {

@@ -28,9 +28,13 @@ const MOST: f64 = 0.4;
 /// from each other by their size: the smallest is named.
 const NEARLY: f64 = 1.5;
 /// A change of unit explains rows if they then err at most so many times as much as the others, and
-/// these err at most by this share of the range: otherwise the model cannot follow the material.
+/// by at most this share of what they did before. The others err at most by this share of the range:
+/// otherwise the model cannot follow the material.
 const EXPLAINED: f64 = 3.0;
+const LEFT: f64 = 0.15;
 const FOLLOWED: f64 = 0.03;
+/// In a longer recording, rows are taken from which the shape of the loops can be seen.
+const ROWS: usize = 10_000;
 /// Blocks that disagree may have so many between them where they agree by chance.
 const BETWEEN: [usize; 3] = [0, 2, 5];
 /// With more jumps than this, stretches between them say nothing.
@@ -51,6 +55,45 @@ struct Suspect {
 
 /// The stretches without which a model errs least on the others, if that is much less.
 pub(super) fn disagreement(recording: &Recording) -> Option<Doubt> {
+    let rows = fewer(recording);
+    let found = match rows.len() < recording.len() {
+        true => found(&recording.only(|n| rows.binary_search(&n).is_ok())?)?,
+        false => found(recording)?,
+    };
+    let percent = |error: f64| 100.0 * error / usual_span(&recording.output);
+    let places = found.rows.iter();
+    Some(Doubt::Disagree {
+        rows: places
+            .map(|own| (rows[own.start] + 1, rows[own.end - 1] + 1))
+            .collect(),
+        with: percent(found.with),
+        without: percent(found.without),
+    })
+}
+
+/// All rows of a short recording; of a long one, those with the smallest and the largest input of
+/// each of many pieces, so that turning points stay.
+fn fewer(recording: &Recording) -> Vec<usize> {
+    let len = recording.len();
+    if len <= ROWS {
+        return (0..len).collect();
+    }
+    let input = &recording.input;
+    let pieces = ROWS / 2;
+    let ends = |piece: usize| {
+        let rows = || piece * len / pieces..(piece + 1) * len / pieces;
+        let least = rows().min_by(|a, b| input[*a].total_cmp(&input[*b]));
+        let most = rows().max_by(|a, b| input[*a].total_cmp(&input[*b]));
+        [least, most].into_iter().flatten()
+    };
+    let mut rows: Vec<usize> = (0..pieces).flat_map(ends).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    rows
+}
+
+/// The rows that disagree with the others most clearly.
+fn found(recording: &Recording) -> Option<Suspect> {
     let all = from_kept(recording, |_| true)?;
     let span = usual_span(&recording.output);
     // No part of the rows then errs by enough. The usual range of the others may be smaller; that
@@ -80,17 +123,7 @@ pub(super) fn disagreement(recording: &Recording) -> Option<Doubt> {
         .filter(|one| one.without <= NEARLY * least);
     let best = good.min_by_key(|one| one.rows.iter().map(Range::len).sum::<usize>())?;
     // A model of less data may follow them more closely without having learned more.
-    let found = compared(recording, best.rows, &unseen(recording)?, unseen)?;
-    let percent = |error: f64| 100.0 * error / span;
-    Some(Doubt::Disagree {
-        rows: found
-            .rows
-            .iter()
-            .map(|rows| (rows.start + 1, rows.end))
-            .collect(),
-        with: percent(found.with),
-        without: percent(found.without),
-    })
+    compared(recording, best.rows, &unseen(recording)?, unseen)
 }
 
 /// The errors with and without some rows, if they disagree with the others. `all` is what models of
@@ -152,11 +185,10 @@ fn explained(recording: &Recording, rows: &Range<usize>, without: f64) -> bool {
     let mut exchanged = recording.clone();
     exchanged.input[rows.clone()].copy_from_slice(&recording.output[rows.clone()]);
     exchanged.output[rows.clone()].copy_from_slice(&recording.input[rows.clone()]);
+    let before = off(recording, false).unwrap_or(f64::INFINITY);
+    let enough = (EXPLAINED * without).min(LEFT * before);
     let found = [off(recording, true), off(&exchanged, false)];
-    found
-        .into_iter()
-        .flatten()
-        .any(|off| off <= EXPLAINED * without)
+    found.into_iter().flatten().any(|off| off <= enough)
 }
 
 /// The rising line from `x` to `y` with the least squares; `None` if it does not rise.

@@ -31,8 +31,8 @@ const WORTH: f64 = 1e-3;
 
 /// What a step was worth. The errors are those of a small model on what it was not fitted to, in
 /// the unit of the output: mean distances from the output as measured, over the samples whose input
-/// the step changes, or whose output it does not change; for a filter, from the output without noise
-/// of a recording like this one.
+/// the step changes, or whose output it does not change; for a low-pass, the root of the mean squared
+/// distance from the output of a simulated recording like this one, without its noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judged {
     /// The step, and the series that it changes.
@@ -71,8 +71,10 @@ impl<'a> Judge<'a> {
 
     /// Steps of the input are judged without these samples, whose output is suspect.
     pub(super) fn ignore(&mut self, outputs: Vec<usize>) {
-        self.ignored = outputs;
-        self.distances = None;
+        if self.ignored != outputs {
+            self.ignored = outputs;
+            self.distances = None;
+        }
     }
 
     /// Takes a step that was asked for by its value; one that is left to the data, only if it lowers
@@ -105,17 +107,13 @@ impl<'a> Judge<'a> {
         };
         // With and without it on the same plane: a wrong input makes it wider, and the model coarser
         // or freer.
-        let own = range(&work.input);
-        let known = self.distances.take();
-        change.swap(work);
-        let inner = within(own, range(&work.input));
-        let after = self.distances(work, inner);
-        change.swap(work);
-        let before = match known {
+        let inner = within(range(&work.input), range(change.input(work)));
+        let before = match self.distances.take() {
             Some((range, known)) if range == inner => known,
             _ => self.distances(work, inner),
         };
         change.swap(work);
+        let after = before.as_ref().and_then(|_| self.distances(work, inner));
         let here = |distances: &Vec<f64>| mean(touched.iter().map(|n| distances[*n]));
         let everywhere = |distances: &Vec<f64>| mean(all().map(|n| distances[n]));
         let pair = before.as_ref().zip(after.as_ref());

@@ -28,7 +28,8 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
         let step = |values: &[f64]| (values[n] - values[n - 1]).abs();
         n > 0 && (step(input) > seams[0] || step(output) > seams[1])
     };
-    let mut first: HashMap<[(u64, u64); SHORTEST], usize> = HashMap::new();
+    // Where rows like these stood first, and where they stood last.
+    let mut places: HashMap<[(u64, u64); SHORTEST], (usize, usize)> = HashMap::new();
     let mut found = Vec::new();
     let mut n = 0;
     while n + SHORTEST <= len {
@@ -36,18 +37,29 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
             n += 1;
             continue;
         }
-        let earlier = *first.entry(key(n)).or_insert(n);
-        if earlier == n || !is_seam(n) {
+        let place = places.entry(key(n)).or_insert((n, n));
+        let (first, last) = *place;
+        place.1 = n;
+        if first == n || !is_seam(n) {
             n += 1;
             continue;
         }
-        let same = (0..len - n).take_while(|k| row(earlier + k) == row(n + k));
-        let count = same.count();
-        let (again, of) = (n..n + count, earlier..earlier + count);
-        n += count;
-        // The rows after it go on where the earlier ones ended, or elsewhere.
-        if of.end >= again.start || n >= len || is_seam(n) {
-            found.push((again, of));
+        let same = |earlier: usize| {
+            let count = (0..len - n)
+                .take_while(|k| row(earlier + k) == row(n + k))
+                .count();
+            (n..n + count, earlier..earlier + count)
+        };
+        // The rows go on where the earlier ones ended, or elsewhere.
+        let goes_back = |(again, of): &Repeated| {
+            of.end >= again.start || again.end == len || is_seam(again.end)
+        };
+        match [last, first].map(same).into_iter().find(goes_back) {
+            Some(block) => {
+                n = block.0.end;
+                found.push(block);
+            }
+            None => n += 1,
         }
     }
     found
