@@ -7,7 +7,6 @@
 //! also errs in some blocks more than in others. So these rows disagree only if a change of their
 //! unit, or an exchange of their columns, makes them agree.
 
-use super::doubt::Doubt;
 use super::judge::{apart, from_kept, mean, unseen};
 use crate::recording::Recording;
 use crate::series::jumps::jumps;
@@ -27,12 +26,12 @@ const MOST: f64 = 0.4;
 /// Sets of rows without which the others are followed nearly as well, up to this factor, are told
 /// from each other by their size: the smallest is named.
 const NEARLY: f64 = 1.5;
-/// A change of unit explains rows if they then err at most so many times as much as the others, and
+/// A change of unit explains rows if they then err at most as much as the others, and
 /// by at most this share of what they did before. The others err at most by this share of the range:
 /// otherwise the model cannot follow the material.
-const EXPLAINED: f64 = 3.0;
-const LEFT: f64 = 0.15;
-const FOLLOWED: f64 = 0.03;
+const EXPLAINED: f64 = 1.0;
+const LEFT: f64 = 0.1;
+const FOLLOWED: f64 = 0.02;
 /// In a longer recording, rows are taken from which the shape of the loops can be seen.
 const ROWS: usize = 10_000;
 /// Blocks that disagree may have so many between them where they agree by chance.
@@ -46,29 +45,25 @@ const SUSPECT: f64 = 4.0;
 const ROUNDS: usize = 4;
 const WINDOWS: usize = 5;
 
-/// Stretches of rows, and the errors on the others with and without them: mean distances.
-struct Suspect {
-    rows: Vec<Range<usize>>,
-    with: f64,
-    without: f64,
+/// Stretches of rows that disagree with the others, and the errors on the others with and without
+/// them: mean distances.
+pub(super) struct Disagreement {
+    pub(super) rows: Vec<Range<usize>>,
+    pub(super) with: f64,
+    pub(super) without: f64,
 }
 
 /// The stretches without which a model errs least on the others, if that is much less.
-pub(super) fn disagreement(recording: &Recording) -> Option<Doubt> {
+pub(super) fn disagreement(recording: &Recording) -> Option<Disagreement> {
     let rows = fewer(recording);
-    let found = match rows.len() < recording.len() {
-        true => found(&recording.only(|n| rows.binary_search(&n).is_ok())?)?,
-        false => found(recording)?,
-    };
-    let percent = |error: f64| 100.0 * error / usual_span(&recording.output);
-    let places = found.rows.iter();
-    Some(Doubt::Disagree {
-        rows: places
-            .map(|own| (rows[own.start] + 1, rows[own.end - 1] + 1))
-            .collect(),
-        with: percent(found.with),
-        without: percent(found.without),
-    })
+    if rows.len() == recording.len() {
+        return found(recording);
+    }
+    let mut found = found(&recording.only(|n| rows.binary_search(&n).is_ok())?)?;
+    for own in &mut found.rows {
+        *own = rows[own.start]..rows[own.end - 1] + 1;
+    }
+    Some(found)
 }
 
 /// All rows of a short recording; of a long one, those with the smallest and the largest input of
@@ -93,7 +88,7 @@ fn fewer(recording: &Recording) -> Vec<usize> {
 }
 
 /// The rows that disagree with the others most clearly.
-fn found(recording: &Recording) -> Option<Suspect> {
+fn found(recording: &Recording) -> Option<Disagreement> {
     let all = from_kept(recording, |_| true)?;
     let span = usual_span(&recording.output);
     // No part of the rows then errs by enough. The usual range of the others may be smaller; that
@@ -113,7 +108,7 @@ fn found(recording: &Recording) -> Option<Suspect> {
         .filter_map(|rows| compared_with(vec![rows.clone()]))
         .filter(|found| found.without <= FOLLOWED * span)
         .filter(|found| explained(recording, &found.rows[0], found.without));
-    let found: Vec<Suspect> = of_jumps.chain(concentrated).collect();
+    let found: Vec<Disagreement> = of_jumps.chain(concentrated).collect();
     let least = found
         .iter()
         .map(|one| one.without)
@@ -133,7 +128,7 @@ fn compared(
     rows: Vec<Range<usize>>,
     all: &[f64],
     predicted: fn(&Recording) -> Option<Vec<f64>>,
-) -> Option<Suspect> {
+) -> Option<Disagreement> {
     let kept = |n: usize| !rows.iter().any(|rows| rows.contains(&n));
     let others: Vec<usize> = (0..recording.len()).filter(|n| kept(*n)).collect();
     let share = 1.0 - others.len() as f64 / recording.len() as f64;
@@ -150,7 +145,7 @@ fn compared(
         false => LEAST_AT_START,
     };
     let least = least * usual_span(&rest.output).min(usual_span(&recording.output));
-    (with > least && with > FACTOR * without).then_some(Suspect {
+    (with > least && with > FACTOR * without).then_some(Disagreement {
         rows,
         with,
         without,

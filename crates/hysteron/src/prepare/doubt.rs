@@ -5,12 +5,14 @@
 
 use super::disagree::disagreement;
 use super::judge::Judge;
-use super::{PrepareOptions, Step, single};
+use super::options::{PrepareOptions, Step};
+use super::single;
 use crate::error::{Error, Result};
 use crate::recording::{Recording, turned_in_gaps};
 use crate::remedy::{Remedy, Setting};
 use crate::series::frozen::frozen;
 use crate::series::repeated::repeated;
+use crate::series::spread::usual_span;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -219,7 +221,12 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
     }
     // Where rows are known to be wrong, all others would disagree with them.
     if found.is_empty() {
-        found.extend(disagreement(recording));
+        let percent = |error: f64| 100.0 * error / usual_span(output);
+        found.extend(disagreement(recording).map(|found| Doubt::Disagree {
+            rows: found.rows.iter().map(rows).collect(),
+            with: percent(found.with),
+            without: percent(found.without),
+        }));
     }
     found
 }
