@@ -899,8 +899,9 @@ class Doubt(_Result):
     Attributes
     ----------
     kind : str
-        'frozen': a series stands still while the other covers most of its range. 'repeated': rows
-        are the same as earlier ones. 'disagree': no model follows these rows and the others.
+        'frozen': a series stands still while the other moves. 'repeated': rows are the same as
+        earlier ones. 'gap': the input turned where rows are missing. 'disagree': no model follows
+        these rows and the others.
     rows : tuple of (int, int)
         First and last row of each stretch, counted from 1.
     text : str
@@ -961,8 +962,9 @@ class RecordingSummary(_Result):
 class Judged(_Result):
     """What a step of `prepare` was worth.
 
-    The errors are those of a small model on parts of the recording that it was not fitted to: mean
-    distances from the output as measured, in its unit.
+    The errors are those of a small model on what it was not fitted to, in the output's unit: mean
+    distances from the output as measured; for a low-pass, the root of the mean squared distance from
+    the output of a simulated recording like this one, without its noise.
 
     Attributes
     ----------

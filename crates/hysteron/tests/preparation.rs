@@ -117,6 +117,33 @@ fn difference(a: &[f64], b: &[f64], range: (f64, f64)) -> f64 {
     100.0 * (squares / a.len() as f64).sqrt() / (range.1 - range.0)
 }
 
+/// Recordings with noise that is worth a step: a flickering thermometer, a noisy one, a noisy
+/// position. All others come out as they went in.
+const NOISY: [&str; 3] = [
+    "sma_isobaric_cycles_1_to_4",
+    "sma_nitico_walgren_200MPa",
+    "sma_baraghini_Step02",
+];
+
+/// The recordings of a valve. Not that of a pseudo-random drive (`prbn_1`): the valve cannot follow
+/// its shortest steps, and a model without dynamics errs less without some of them.
+#[test]
+fn recordings_of_a_valve_come_out_as_they_went_in() {
+    let names = ["100Hz", "20Hz", "sine100_1", "sine50_1"];
+    let paths = shared(names.map(|name| format!("valve_{name}.csv")));
+    for (name, path) in names.into_iter().zip(paths) {
+        let Some(path) = path else { continue };
+        let columns = Columns {
+            time: Some("time_s"),
+            ..Columns::new("voltage_V", "position")
+        };
+        let recording = Recording::read(&path, columns, Repair::Refuse).unwrap().0;
+        let (prepared, report) =
+            prepare(&recording, &PrepareOptions::default(), Progress::NONE).unwrap();
+        assert!(prepared == recording, "{name}: {:?}", report.judged);
+    }
+}
+
 /// Readings that dropped to zero between −2 and −8 °C, counted from 1; and in the second recording
 /// (586) a single reading that sticks out of a cooling ramp by 1.7 °C, which may be true.
 fn expected_spikes(name: &str) -> &'static [usize] {
@@ -172,6 +199,8 @@ fn spikes_are_taken_from_the_two_that_have_them_and_nothing_gets_worse() {
             changed[0],
             changed[1],
         );
+        let same = prepared == recording;
+        assert!(same || NOISY.contains(&name), "{name}: {:?}", report.judged);
         // Smoothing narrows the range that errors are measured by, by half a per cent of itself.
         assert!(after <= 1.01 * before, "{name}: {before} to {after}");
 

@@ -83,8 +83,26 @@ fn readings_that_agree_are_data() {
     }
 }
 
-/// A gross error beyond the range, where the branch is not steep, is named by its row in the file,
-/// with branches held out too.
+/// The outliers that a fit named.
+fn named(model: Model) -> Vec<usize> {
+    let fit = model.fit.unwrap();
+    fit.outliers.iter().map(|outlier| outlier.sample).collect()
+}
+
+/// One to six samples, each at least three from the next: of nine in a row, three are wrong at most.
+fn apart(rng: &mut ChaCha8Rng, len: usize) -> Vec<usize> {
+    let mut found: Vec<usize> = Vec::new();
+    for _ in 0..rng.random_range(1..=6) {
+        let n = rng.random_range(2..len - 2);
+        if found.iter().all(|other| other.abs_diff(n) >= 3) {
+            found.push(n);
+        }
+    }
+    found
+}
+
+/// Gross errors beyond the range, several in one recording, on flat and on steep branches and at
+/// turning points, are named by their rows in the file, with branches held out too.
 #[test]
 fn readings_that_stand_alone_are_outliers() {
     for seed in 0..60 {
@@ -93,24 +111,12 @@ fn readings_that_stand_alone_are_outliers() {
         if recording.len() < 100 {
             continue;
         }
-        let y = &recording.output;
-        let flat = |n: &usize| (n - 4..n + 4).all(|k| (y[k + 1] - y[k]).abs() < 0.3);
-        let places: Vec<usize> = (4..y.len() - 4).filter(flat).collect();
-        let wrong = [places[rng.random_range(0..places.len())]];
+        let wrong = apart(&mut rng, recording.len());
         for n in &wrong {
             let off = rng.random_range(10.0..100.0);
             recording.output[*n] += if rng.random_bool(0.5) { off } else { -off };
         }
         let fit = fit(&mut rng);
-        let named = |model: Model| -> Vec<usize> {
-            model
-                .fit
-                .unwrap()
-                .outliers
-                .iter()
-                .map(|o| o.sample)
-                .collect()
-        };
         let found = named(fit.run(&recording).unwrap());
         assert!(
             wrong.iter().all(|n| found.contains(n)),
@@ -129,4 +135,35 @@ fn readings_that_stand_alone_are_outliers() {
             "seed {seed}: {wrong:?} {found:?}"
         );
     }
+}
+
+/// Dropouts to one value at one input agree with each other. They are outliers all the same, as long
+/// as they are the fewer visits to that input.
+#[test]
+fn dropouts_to_one_value_at_one_input_are_outliers() {
+    let mut tried = 0;
+    for seed in 0..120 {
+        let mut rng = ChaCha8Rng::seed_from_u64(2000 + seed);
+        let mut recording = recorded(&mut rng, 1e-3);
+        let x = &recording.input;
+        let at = x[rng.random_range(0..x.len())];
+        // The visits to this input in one direction, each of one reading or of three.
+        let rising = |rows: &Vec<usize>| rows[0] > 0 && x[rows[0] - 1] < at;
+        let inside = |rows: &Vec<usize>| rows[0] > 1 && rows[rows.len() - 1] + 2 < x.len();
+        let same: Vec<usize> = (0..x.len()).filter(|n| x[*n] == at).collect();
+        let visits = same.chunk_by(|a, b| a + 1 == *b).map(<[usize]>::to_vec);
+        let visits: Vec<Vec<usize>> = visits.filter(inside).filter(rising).collect();
+        let fewer = visits.len().saturating_sub(1) / 2;
+        if fewer == 0 {
+            continue;
+        }
+        tried += 1;
+        let wrong: Vec<usize> = visits[..rng.random_range(1..=fewer)].concat();
+        let value = rng.random_range(-100.0..-20.0);
+        wrong.iter().for_each(|n| recording.output[*n] = value);
+        let found = named(fit(&mut rng).run(&recording).unwrap());
+        let missed: Vec<&usize> = wrong.iter().filter(|n| !found.contains(n)).collect();
+        assert!(missed.is_empty(), "seed {seed}: {wrong:?} {found:?}");
+    }
+    assert!(tried > 20, "{tried}");
 }

@@ -3,12 +3,12 @@
 use crate::error::Result;
 use crate::identify::choose::start::MANY_OPEN;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
-use crate::model::{Model, Solver, Start};
-use crate::recording::Recording;
+use crate::model::{Model, Outlier, Solver, Start};
+use crate::recording::{Quantity, Recording};
 use crate::remedy::{Remedy, Setting};
-use crate::series::jumps::remove_bursts;
+use crate::series::lost::wrong;
 use crate::series::noise::noise;
-use crate::series::spikes::{DEVIATIONS, remove};
+use crate::series::spikes::DEVIATIONS;
 use crate::series::{branch_spans, usual_tolerance};
 use std::fmt;
 
@@ -49,8 +49,11 @@ pub enum Advice {
         /// Standard deviation of the input's noise, in its unit.
         noise: f64,
     },
-    /// Readings of the input stand out: each moves operators that it did not move.
+    /// Readings stand out from their neighbours, or were held while the series moved on. Those of
+    /// the output that the fit found as outliers are not among them.
     Spikes {
+        /// Name of the series.
+        series: String,
         /// Number of these readings.
         samples: usize,
         /// The first of them, counted from 1.
@@ -106,10 +109,14 @@ impl fmt::Display for Advice {
                 "the input reverses {all} times, but only {real} reversals are larger than its \
                  noise of {noise:.3}: the others bend the model"
             ),
-            Self::Spikes { samples, first } => write!(
+            Self::Spikes {
+                series,
+                samples,
+                first,
+            } => write!(
                 f,
-                "{samples} readings of the input stand out from their neighbours, the first in row \
-                 {first}: such a spike bends the model"
+                "{samples} readings of {series} stand out from their neighbours or were held, the \
+                 first in row {first}: they bend the model"
             ),
             Self::FewData {
                 samples,
@@ -200,7 +207,14 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         });
     }
     let noisy = recordings.iter().find_map(false_reversals);
-    advice.extend(recordings.iter().find_map(spikes));
+    let fit = model.fit.as_ref();
+    let outliers = fit.map_or(&[][..], |fit| &fit.outliers);
+    advice.extend(
+        recordings
+            .iter()
+            .enumerate()
+            .flat_map(|(n, r)| spikes(r, n, outliers)),
+    );
     if let Some(fit) = &model.fit {
         if let Some(noisy) = noisy {
             advice.push(noisy);
@@ -236,15 +250,27 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     Ok(advice)
 }
 
-fn spikes(recording: &Recording) -> Option<Advice> {
-    let mut input = recording.input.clone();
-    let mut found = remove_bursts(&mut input);
-    found.extend(remove(&mut input, DEVIATIONS));
-    let first = found.iter().min()? + 1;
-    Some(Advice::Spikes {
-        samples: found.len(),
-        first,
-    })
+/// The wrong readings of each series of the recording with this number.
+fn spikes(recording: &Recording, number: usize, outliers: &[Outlier]) -> Vec<Advice> {
+    let is_outlier = |sample| {
+        let mut outliers = outliers.iter();
+        outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
+    };
+    let input = wrong(&recording.input, Some(&recording.output), DEVIATIONS, true);
+    let mut output = wrong(&recording.output, None, DEVIATIONS, true);
+    output.retain(|sample| !is_outlier(*sample));
+    let of = |found: Vec<usize>, quantity: &Quantity| {
+        found.first().map(|first| Advice::Spikes {
+            series: quantity.name.clone(),
+            samples: found.len(),
+            first: first + 1,
+        })
+    };
+    let both = [
+        of(input, &recording.input_quantity),
+        of(output, &recording.output_quantity),
+    ];
+    both.into_iter().flatten().collect()
 }
 
 /// So many times more reversals than real ones are noise, from this number of them on.

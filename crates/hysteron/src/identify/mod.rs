@@ -22,8 +22,8 @@ mod weights;
 mod words;
 
 pub use advice::{Advice, advice};
-pub(crate) use choose::left_out::predicted_without;
 pub use choose::left_out::{LeftOut, left_out};
+pub(crate) use choose::left_out::{predicted_from, predicted_without};
 pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
 pub(crate) use doubt::excitation::Unresolved;

@@ -19,7 +19,7 @@ pub(super) struct Neighbours<'a> {
     branches: Vec<Range<usize>>,
     /// Samples that are suspect, ascending.
     suspect: Vec<usize>,
-    /// Those of them that agree with a majority of the readings at the same input and direction.
+    /// Those of them that were measured again.
     repeated: Vec<usize>,
     /// Outputs that differ by less are the same.
     same: f64,
@@ -113,38 +113,66 @@ impl<'a> Neighbours<'a> {
         self.recording.input[own.end - 1] > self.recording.input[first]
     }
 
-    /// The suspect readings that most of the readings at the same input and direction agree with.
+    /// The suspect readings that at least half of the other visits to the same input in the same
+    /// direction agree with. A visit is what one branch has there: readings in a row that agree are
+    /// one excursion, and prove nothing.
     fn find_repeated(&self) -> Vec<usize> {
         let Recording { input, output, .. } = self.recording;
         let (low, high) = range(input);
         let near = SAME * (high - low);
-        let direction = |sample| self.branch_of(sample).map(|branch| self.rises(branch));
-        // How many others there are at the same input and direction, and how many agree.
-        let mut sorted: Vec<(usize, Option<bool>, u32, u32)> = self
-            .suspect
-            .iter()
-            .map(|sample| (*sample, direction(*sample), 0, 0))
-            .collect();
-        sorted.sort_by(|a, b| input[a.0].total_cmp(&input[b.0]));
+        let mut suspects = self.suspect.clone();
+        suspects.sort_by(|a, b| input[*a].total_cmp(&input[*b]));
+        let own: Vec<_> = suspects.iter().map(|n| self.branch_of(*n)).collect();
+        let rises: Vec<bool> = (0..self.branches.len()).map(|n| self.rises(n)).collect();
+        let mut visits: Vec<Vec<Visit>> = vec![Vec::new(); suspects.len()];
         for (branch, samples) in self.branches.iter().enumerate() {
-            let rises = Some(self.rises(branch));
             for n in samples.clone() {
-                let from = sorted.partition_point(|own| input[own.0] < input[n] - near);
-                let close = sorted[from..].iter_mut();
-                let close = close.take_while(|own| input[own.0] <= input[n] + near);
-                for (sample, direction, others, agree) in close {
-                    if *sample != n && *direction == rises {
-                        *others += 1;
-                        *agree += u32::from((output[n] - output[*sample]).abs() <= self.same);
+                let from = suspects.partition_point(|s| input[*s] < input[n] - near);
+                let close = suspects[from..]
+                    .iter()
+                    .take_while(|s| input[**s] <= input[n] + near);
+                for (k, sample) in (from..).zip(close) {
+                    let other = own[k].filter(|own| *own != branch);
+                    if other.is_none_or(|own| rises[own] != rises[branch]) {
+                        continue;
+                    }
+                    if visits[k].last().is_none_or(|last| last.branch != branch) {
+                        visits[k].push(Visit {
+                            branch,
+                            readings: 0,
+                            agree: 0,
+                        });
+                    }
+                    if let Some(visit) = visits[k].last_mut() {
+                        visit.readings += 1;
+                        let apart = (output[n] - output[*sample]).abs();
+                        visit.agree += u32::from(apart <= self.same);
                     }
                 }
             }
         }
-        let most = |(_, _, others, agree): &&(usize, Option<bool>, u32, u32)| {
-            *agree > 0 && 2 * agree >= *others
+        let is_repeated = |visits: &[Visit]| {
+            let agree = visits
+                .iter()
+                .filter(|visit| 2 * visit.agree > visit.readings);
+            let agree = agree.count();
+            agree > 0 && 2 * agree >= visits.len()
         };
-        let mut repeated: Vec<usize> = sorted.iter().filter(most).map(|own| own.0).collect();
+        let pairs = suspects.into_iter().zip(&visits);
+        let mut repeated: Vec<usize> = pairs
+            .filter(|(_, visits)| is_repeated(visits))
+            .map(|(sample, _)| sample)
+            .collect();
         repeated.sort_unstable();
         repeated
     }
+}
+
+/// What a branch has at the input of a suspect reading.
+#[derive(Clone)]
+struct Visit {
+    branch: usize,
+    readings: u32,
+    /// Those of them that agree with it.
+    agree: u32,
 }

@@ -45,6 +45,12 @@ fn monotone(branch: &mut [f64], ahead: fn(f64, f64) -> f64, behind: fn(f64, f64)
     }
 }
 
+/// The largest reversal that white noise of deviation `sigma` causes in `len` samples: the largest
+/// of so many Gaussian values (Donoho & Johnstone 1994), on both sides.
+pub(super) fn reach(len: usize, sigma: f64) -> f64 {
+    2.0 * (2.0 * (len as f64).ln()).sqrt() * sigma
+}
+
 /// The smallest step of a reading, plus a margin for the rounding of the difference of two
 /// readings.
 pub(super) fn resolution_with_rounding(values: &[f64]) -> f64 {

@@ -1,18 +1,16 @@
 //! What in a recording cannot be believed, and cannot be mended either.
 //!
 //! A frozen channel and a block that comes twice are told by their readings alone. Rows in other
-//! units, or with their columns exchanged, are told by what they do to the others: a model that has
-//! not seen them errs much less on the rest.
+//! units, or with their columns exchanged, are told by what they do to a model of the others.
 
-use super::{PrepareOptions, Step, prepare};
+use super::disagree::disagreement;
+use super::judge::Judge;
+use super::options::{PrepareOptions, Step};
+use super::single;
 use crate::error::{Error, Result};
-use crate::prepare::judge::{mean_distance, unseen};
-use crate::progress::Progress;
-use crate::recording::Recording;
+use crate::recording::{Recording, turned_in_gaps};
 use crate::remedy::{Remedy, Setting};
 use crate::series::frozen::frozen;
-use crate::series::jumps::jumps;
-use crate::series::noise::median_of;
 use crate::series::repeated::repeated;
 use crate::series::spread::usual_span;
 use serde::ser::SerializeStruct;
@@ -20,24 +18,12 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use std::ops::Range;
 
-/// Rows that disagree raise the error on the others by at least this factor,
-const FACTOR: f64 = 2.0;
-/// to at least this share of the usual range of the output.
-const LEAST: f64 = 0.01;
-/// At most this share of the rows can disagree with the others.
-const MOST: f64 = 0.4;
-/// With more jumps than this, stretches between them say nothing.
-const JUMPS: usize = 8;
-/// Number of stretches that are looked at where nothing jumps, and how many times the usual error
-/// makes one suspect.
-const STRETCHES: usize = 40;
-const SUSPECT: f64 = 4.0;
-
 /// A reason not to believe a recording. Rows are counted from 1, as samples of the recording.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Doubt {
-    /// A series keeps exactly one value while the other covers most of its range.
+    /// A series keeps exactly one value while the other moves far, or for longer than half a branch
+    /// before it goes on elsewhere.
     Frozen {
         /// Name of the series that stands still.
         series: String,
@@ -52,6 +38,13 @@ pub enum Doubt {
         rows: (usize, usize),
         /// First and last of the earlier rows.
         of: (usize, usize),
+    },
+    /// Rows are missing between two, and the input turned meanwhile.
+    Gap {
+        /// Name of the input.
+        series: String,
+        /// The last row before the gap, and the first one after it.
+        rows: (usize, usize),
     },
     /// No model follows these rows together with the others.
     Disagree {
@@ -74,8 +67,8 @@ impl fmt::Display for Doubt {
                 other,
             } => write!(
                 f,
-                "{series} stands still in rows {first} to {last} while {other} moves over most of \
-                 its range: a frozen channel"
+                "{series} stands still in rows {first} to {last} while {other} moves: a frozen \
+                 channel"
             ),
             Self::Repeated {
                 rows: (first, last),
@@ -83,6 +76,13 @@ impl fmt::Display for Doubt {
             } => write!(
                 f,
                 "rows {first} to {last} are rows {earlier} to {until} once more, to the last digit"
+            ),
+            Self::Gap {
+                series,
+                rows: (before, after),
+            } => write!(
+                f,
+                "between rows {before} and {after} is a gap in which {series} turned unseen"
             ),
             Self::Disagree {
                 rows,
@@ -116,12 +116,13 @@ impl Serialize for Doubt {
 }
 
 impl Doubt {
-    /// One word for it: `frozen`, `repeated` or `disagree`.
+    /// One word for it: `frozen`, `repeated`, `gap` or `disagree`.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Frozen { .. } => "frozen",
             Self::Repeated { .. } => "repeated",
+            Self::Gap { .. } => "gap",
             Self::Disagree { .. } => "disagree",
         }
     }
@@ -130,7 +131,9 @@ impl Doubt {
     #[must_use]
     pub fn rows(&self) -> Vec<(usize, usize)> {
         match self {
-            Self::Frozen { rows, .. } | Self::Repeated { rows, .. } => vec![*rows],
+            Self::Frozen { rows, .. } | Self::Repeated { rows, .. } | Self::Gap { rows, .. } => {
+                vec![*rows]
+            }
             Self::Disagree { rows, .. } => rows.clone(),
         }
     }
@@ -138,6 +141,13 @@ impl Doubt {
     /// What may help.
     #[must_use]
     pub fn remedy(&self) -> Remedy {
+        if let Self::Gap { .. } = self {
+            return Remedy::new(
+                "cut the file there, since several files make one experiment; with {} it is \
+                 believed",
+                [Setting::on("believe")],
+            );
+        }
         let rows = self.rows().into_iter();
         let rows: Vec<String> = rows
             .map(|(first, last)| format!("{first}-{last}"))
@@ -167,12 +177,19 @@ impl Doubt {
 /// # Errors
 /// [`Error::Recording`] for an invalid recording.
 pub fn doubts(recording: &Recording) -> Result<Vec<Doubt>> {
-    let spikes = PrepareOptions {
+    recording.check()?;
+    Ok(beside_spikes(recording))
+}
+
+/// The doubts about a recording that may have spikes.
+fn beside_spikes(recording: &Recording) -> Vec<Doubt> {
+    let options = PrepareOptions {
         spikes: Step::Auto,
         ..PrepareOptions::all(Step::Off)
     };
-    let (mended, _) = prepare(recording, &spikes, Progress::NONE)?;
-    Ok(without_spikes(&mended))
+    let mut mended = recording.clone();
+    single::repair(&mut mended, &options, &mut Judge::new(recording));
+    without_spikes(&mended)
 }
 
 /// The doubts about a recording whose spikes are gone.
@@ -195,9 +212,21 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
         let (rows, of) = (rows(again), rows(of));
         Doubt::Repeated { rows, of }
     }));
+    if let Some(time) = &recording.time {
+        let gaps = turned_in_gaps(time, input).into_iter();
+        found.extend(gaps.map(|n| Doubt::Gap {
+            series: x.clone(),
+            rows: (n, n + 1),
+        }));
+    }
     // Where rows are known to be wrong, all others would disagree with them.
     if found.is_empty() {
-        found.extend(disagreement(recording));
+        let percent = |error: f64| 100.0 * error / usual_span(output);
+        found.extend(disagreement(recording).map(|found| Doubt::Disagree {
+            rows: found.rows.iter().map(rows).collect(),
+            with: percent(found.with),
+            without: percent(found.without),
+        }));
     }
     found
 }
@@ -205,87 +234,11 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
 /// Refuses a recording that cannot be believed. Spikes that are to stay are no reason.
 pub(super) fn refuse(recording: &Recording, spikes: Step) -> Result<()> {
     let found = match spikes {
-        Step::Off => doubts(recording)?,
+        Step::Off => beside_spikes(recording),
         _ => without_spikes(recording),
     };
     match found.first() {
         Some(doubt) => Err(Error::Preparation(doubt.to_string()).remedied(doubt.remedy())),
         None => Ok(()),
     }
-}
-
-/// The stretches without which a model errs least on the others, if that is much less.
-fn disagreement(recording: &Recording) -> Option<Doubt> {
-    let span = usual_span(&recording.output);
-    let all = unseen(recording)?;
-    let mut best: Option<(f64, f64, Vec<Range<usize>>)> = None;
-    for stretches in suspects(recording, &all) {
-        let kept = |n: usize| !stretches.iter().any(|rows| rows.contains(&n));
-        let count = (0..recording.len()).filter(|n| !kept(*n)).count();
-        if count == 0 || count as f64 > MOST * recording.len() as f64 {
-            continue;
-        }
-        let Some(rest) = recording.only(kept) else {
-            continue;
-        };
-        let Some(alone) = unseen(&rest) else { continue };
-        let seen_by_all: Vec<f64> = (0..all.len())
-            .filter(|n| kept(*n))
-            .map(|n| all[n])
-            .collect();
-        let with = mean_distance(&rest.output, &seen_by_all);
-        let without = mean_distance(&rest.output, &alone);
-        // The usual range may be that of the wrong rows.
-        let least = LEAST * usual_span(&rest.output).min(span);
-        let better = best.as_ref().is_none_or(|(best, ..)| without < *best);
-        if with > least && with > FACTOR * without && better {
-            best = Some((without, with, stretches));
-        }
-    }
-    let (without, with, stretches) = best?;
-    let percent = |error: f64| 100.0 * error / span;
-    Some(Doubt::Disagree {
-        rows: stretches
-            .iter()
-            .map(|rows| (rows.start + 1, rows.end))
-            .collect(),
-        with: percent(with),
-        without: percent(without),
-    })
-}
-
-/// Sets of stretches that may disagree with the rest: those between jumps, alone and every other
-/// one; and those where models err most.
-fn suspects(recording: &Recording, predicted: &[f64]) -> Vec<Vec<Range<usize>>> {
-    let len = recording.len();
-    let mut sets = Vec::new();
-    let mut cuts = [jumps(&recording.input), jumps(&recording.output)].concat();
-    cuts.sort_unstable();
-    cuts.dedup();
-    if (1..=JUMPS).contains(&cuts.len()) {
-        let begins = [0].into_iter().chain(cuts.iter().copied());
-        let ends = cuts.iter().copied().chain([len]);
-        let stretches: Vec<Range<usize>> = begins.zip(ends).map(|(a, b)| a..b).collect();
-        for first in [0, 1] {
-            sets.push(stretches.iter().skip(first).step_by(2).cloned().collect());
-        }
-        sets.extend(stretches.into_iter().map(|stretch| vec![stretch]));
-    }
-    let bounds: Vec<usize> = (0..=STRETCHES).map(|n| n * len / STRETCHES).collect();
-    let errors = bounds.windows(2).map(|b| {
-        let rows = b[0]..b[1];
-        mean_distance(&recording.output[rows.clone()], &predicted[rows])
-    });
-    let errors: Vec<f64> = errors.collect();
-    let suspect = SUSPECT * median_of(errors.clone());
-    let mut large: Vec<Range<usize>> = Vec::new();
-    for (error, b) in errors.iter().zip(bounds.windows(2)) {
-        match large.last_mut() {
-            _ if *error <= suspect => {}
-            Some(last) if last.end == b[0] => last.end = b[1],
-            _ => large.push(b[0]..b[1]),
-        }
-    }
-    sets.push(large);
-    sets
 }

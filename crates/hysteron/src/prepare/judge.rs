@@ -2,17 +2,22 @@
 //!
 //! The recording is divided into blocks. A small model is fitted without a fifth of them, and
 //! predicts the output there; so each block is left out once. The predictions are compared with the
-//! output as it was measured. A step is kept only if they come closer to it where it changes the
-//! input, and no further from it elsewhere. The mean distance is compared, not its square: a reading
-//! of the output that is wrong then counts the same with and without the step, and decides nothing.
+//! output as it was measured. A step is kept only if they come closer to it: where it changes the
+//! input, and no further from it elsewhere; or where it does not change the output. Outputs that are
+//! suspect have no say in steps of the input. The mean distance is compared, not its square: of
+//! the wrong readings that nobody suspects, each then counts the same with and without the step.
+//!
+//! A filter is judged otherwise, see [`super::alike`].
 
-use crate::identify::{FitOptions, SOME_SMOOTHNESS, predicted_without};
+use super::change::Change;
+use crate::identify::{FitOptions, SOME_SMOOTHNESS, predicted_from, predicted_without};
 use crate::model::Start;
 use crate::prepare::options::Step;
 use crate::prepare::resample::at_times;
 use crate::recording::Recording;
 use crate::series::range;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Levels of the model: enough to resolve the loops, and few enough for many fits.
 const LEVELS: usize = 20;
@@ -24,9 +29,10 @@ const SHORTEST: usize = 3;
 /// A gain below this share of the error is rounding, or luck.
 const WORTH: f64 = 1e-3;
 
-/// What a step was worth. The errors are those of a small model on parts of the recording that it
-/// was not fitted to: mean distances from the output as measured, in its unit, over the samples whose
-/// input the step changes; over all, if it changes none or the times.
+/// What a step was worth. The errors are those of a small model on what it was not fitted to, in
+/// the unit of the output: mean distances from the output as measured, over the samples whose input
+/// the step changes, or whose output it does not change; for a low-pass, the root of the mean squared
+/// distance from the output of a simulated recording like this one, without its noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judged {
     /// The step, and the series that it changes.
@@ -46,8 +52,11 @@ pub(super) struct Judge<'a> {
     measured: &'a Recording,
     /// What was judged so far.
     pub(super) judged: Vec<Judged>,
-    /// The distances of the last recording that was kept, once they are needed.
-    distances: Option<Option<Vec<f64>>>,
+    /// The distances of the last recording that was kept, over a range of inputs, once they are
+    /// needed.
+    distances: Option<(Range, Option<Vec<f64>>)>,
+    /// Samples whose output is not to be believed, ascending: they take no part.
+    ignored: Vec<usize>,
 }
 
 impl<'a> Judge<'a> {
@@ -56,6 +65,15 @@ impl<'a> Judge<'a> {
             measured,
             judged: Vec::new(),
             distances: None,
+            ignored: Vec::new(),
+        }
+    }
+
+    /// Steps of the input are judged without these samples, whose output is suspect.
+    pub(super) fn ignore(&mut self, outputs: Vec<usize>) {
+        if self.ignored != outputs {
+            self.ignored = outputs;
+            self.distances = None;
         }
     }
 
@@ -66,99 +84,114 @@ impl<'a> Judge<'a> {
         step: &'static str,
         how: Step,
         work: &mut Recording,
-        candidate: Recording,
+        mut change: Change,
     ) -> bool {
         if how != Step::Auto {
-            *work = candidate;
-            self.distances = None;
+            self.take(work, &mut change);
             return true;
         }
-        if *work == candidate {
+        let samples = change.samples(work);
+        if samples.is_empty() {
             return false;
         }
-        let before = self
-            .distances
-            .get_or_insert_with(|| distances(self.measured, work))
-            .as_deref();
-        let after = before.and_then(|_| distances(self.measured, &candidate));
-        let touched = touched(self.measured, work, &candidate);
-        let here = |distances: &[f64]| mean(touched.iter().map(|n| distances[*n]));
-        let all = |distances: &[f64]| mean(distances.iter().copied());
-        let pair = before.zip(after.as_deref());
+        if matches!(change, Change::Output(_)) {
+            self.ignore(Vec::new());
+        }
+        let listed = |samples: &[usize], n: &usize| samples.binary_search(n).is_ok();
+        let all = || (0..self.measured.len()).filter(|n| !listed(&self.ignored, n));
+        let touched: Vec<usize> = match change {
+            _ if work.time != self.measured.time => all().collect(),
+            Change::Resampled(_) => all().collect(),
+            Change::Input(_) => all().filter(|n| listed(&samples, n)).collect(),
+            Change::Output(_) => all().filter(|n| !listed(&samples, n)).collect(),
+        };
+        // With and without it on the same plane: a wrong input makes it wider, and the model coarser
+        // or freer.
+        let inner = within(range(&work.input), range(change.input(work)));
+        let before = match self.distances.take() {
+            Some((range, known)) if range == inner => known,
+            _ => self.distances(work, inner),
+        };
+        change.swap(work);
+        let after = before.as_ref().and_then(|_| self.distances(work, inner));
+        let here = |distances: &Vec<f64>| mean(touched.iter().map(|n| distances[*n]));
+        let everywhere = |distances: &Vec<f64>| mean(all().map(|n| distances[n]));
+        let pair = before.as_ref().zip(after.as_ref());
         let kept = pair.is_some_and(|(before, after)| {
-            here(after) < (1.0 - WORTH) * here(before) && all(after) <= (1.0 + WORTH) * all(before)
+            here(after) < (1.0 - WORTH) * here(before)
+                && (matches!(change, Change::Output(_))
+                    || everywhere(after) <= (1.0 + WORTH) * everywhere(before))
         });
         self.judged.push(Judged {
             step,
-            samples: changed(work, &candidate),
-            before: before.map(here),
-            after: after.as_deref().map(here),
+            samples: samples.len(),
+            before: before.as_ref().map(here),
+            after: after.as_ref().map(here),
             kept,
         });
-        if kept {
-            *work = candidate;
-            self.distances = Some(after);
+        if !kept {
+            change.swap(work);
         }
+        self.distances = Some((inner, if kept { after } else { before }));
         kept
     }
+
+    /// Makes a change that needs no judgement of this kind.
+    pub(super) fn take(&mut self, work: &mut Recording, change: &mut Change) {
+        change.swap(work);
+        self.distances = None;
+    }
+
+    /// The distances of the output as measured from what models predict that did not see it. The
+    /// recording that they are fitted to may have other samples in time. `None` if none can be
+    /// fitted.
+    fn distances(&self, work: &Recording, range: Range) -> Option<Vec<f64>> {
+        let (measured, len) = (self.measured, self.measured.len());
+        let fold = |n: usize| {
+            let ignored = self.ignored.binary_search(&n).is_ok();
+            (!ignored).then(|| fold(n, len))
+        };
+        let predicted = match (&measured.time, &work.time) {
+            (Some(old), Some(new)) if old != new => {
+                // A sample is in the block of the last sample measured until then.
+                let until = |t: &f64| old.partition_point(|o| o <= t).saturating_sub(1);
+                let fold: Vec<Option<usize>> = new.iter().map(|t| fold(until(t))).collect();
+                at_times(new, &without_folds(work, &fold, Some(range))?, old)
+            }
+            _ => {
+                let fold: Vec<Option<usize>> = (0..len).map(fold).collect();
+                without_folds(work, &fold, Some(range))?
+            }
+        };
+        Some(apart(&measured.output, &predicted).collect())
+    }
 }
 
-/// Number of samples that differ; all, if their times differ.
-fn changed(work: &Recording, candidate: &Recording) -> usize {
-    if work.time != candidate.time {
-        return candidate.len();
-    }
-    let same = |n: &usize| {
-        work.input[*n] == candidate.input[*n] && work.output[*n] == candidate.output[*n]
-    };
-    (0..work.len()).filter(|n| !same(n)).count()
-}
-
-/// The samples as measured whose input differs; all, if none does or the times are others.
-fn touched(measured: &Recording, work: &Recording, candidate: &Recording) -> Vec<usize> {
-    let all = 0..measured.len();
-    if work.time != measured.time || candidate.time != measured.time {
-        return all.collect();
-    }
-    let differs = |n: &usize| work.input[*n] != candidate.input[*n];
-    match all.clone().any(|n| differs(&n)) {
-        true => all.filter(differs).collect(),
-        false => all.collect(),
-    }
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
+/// NaN of no values.
+pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / count
 }
 
-/// The distances of the output as measured from what models predict that did not see it. The
-/// candidate may have other samples in time. `None` if no model can be fitted.
-fn distances(measured: &Recording, candidate: &Recording) -> Option<Vec<f64>> {
-    let len = measured.len();
-    let predicted = match (&measured.time, &candidate.time) {
-        (Some(old), Some(new)) if old != new => {
-            // A sample is in the block of the last sample measured until then.
-            let until = |t: &f64| old.partition_point(|o| o <= t).saturating_sub(1);
-            let fold: Vec<usize> = new.iter().map(|t| fold(until(t), len)).collect();
-            at_times(new, &without_folds(candidate, len, &fold)?, old)
-        }
-        _ => unseen(candidate)?,
-    };
-    let pairs = measured.output.iter().zip(&predicted);
-    Some(pairs.map(|(y, p)| (y - p).abs()).collect())
+/// The distances of two series, sample by sample.
+pub(super) fn apart<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs())
 }
 
 /// The output at each sample, from models that did not see it; `None` if none can be fitted.
 pub(super) fn unseen(recording: &Recording) -> Option<Vec<f64>> {
     let len = recording.len();
-    let fold: Vec<usize> = (0..len).map(|n| fold(n, len)).collect();
-    without_folds(recording, len, &fold)
+    let fold: Vec<Option<usize>> = (0..len).map(|n| Some(fold(n, len))).collect();
+    without_folds(recording, &fold, None)
 }
 
-pub(super) fn mean_distance(measured: &[f64], predicted: &[f64]) -> f64 {
-    let distances = measured.iter().zip(predicted).map(|(y, p)| (y - p).abs());
-    distances.sum::<f64>() / measured.len() as f64
+/// The output at each sample, from a model of those that are `kept`; `None` if it cannot be fitted.
+pub(super) fn from_kept(recording: &Recording, kept: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
+    let kept: Vec<f64> = (0..recording.len()).map(|n| f64::from(kept(n))).collect();
+    if recording.len() < BLOCKS * SHORTEST {
+        return None;
+    }
+    predicted_from(&with_its_load(recording), &small(), &kept).ok()
 }
 
 /// The group of blocks that a sample of `len` belongs to.
@@ -166,23 +199,49 @@ fn fold(sample: usize, len: usize) -> usize {
     (sample * BLOCKS / len) % FOLDS
 }
 
-fn without_folds(recording: &Recording, len: usize, fold: &[usize]) -> Option<Vec<f64>> {
-    if len < BLOCKS * SHORTEST {
+/// On the plane of a range, or of that of the inputs.
+fn without_folds(
+    recording: &Recording,
+    fold: &[Option<usize>],
+    range: Option<Range>,
+) -> Option<Vec<f64>> {
+    if recording.len() < BLOCKS * SHORTEST {
         return None;
     }
-    let varies = |load: &Vec<f64>| {
-        let (low, high) = range(load);
-        high - low > 1e-9 * high.abs().max(low.abs())
-    };
-    let operators = Recording {
-        load: recording.load.clone().filter(varies),
-        ..recording.clone()
-    };
-    let options = FitOptions {
+    let options = FitOptions { range, ..small() };
+    predicted_without(&with_its_load(recording), &options, fold).ok()
+}
+
+/// Lowest and highest value.
+type Range = (f64, f64);
+
+/// What two ranges have in common; the second, if that is nothing.
+fn within(a: Range, b: Range) -> Range {
+    let common = (a.0.max(b.0), a.1.min(b.1));
+    if common.0 < common.1 { common } else { b }
+}
+
+/// The small model that all is judged by.
+pub(super) fn small() -> FitOptions {
+    FitOptions {
         levels: LEVELS,
         smooth: SOME_SMOOTHNESS,
         start: Start::Unknown,
         ..FitOptions::default()
-    };
-    predicted_without(&operators, &options, fold).ok()
+    }
+}
+
+/// The recording without a load that does not vary.
+pub(super) fn with_its_load(recording: &Recording) -> Cow<'_, Recording> {
+    let constant = recording.load.as_ref().is_some_and(|load| {
+        let (low, high) = range(load);
+        high - low <= 1e-9 * high.abs().max(low.abs())
+    });
+    match constant {
+        true => Cow::Owned(Recording {
+            load: None,
+            ..recording.clone()
+        }),
+        false => Cow::Borrowed(recording),
+    }
 }

@@ -6,8 +6,12 @@
 //! candidate: `judge` keeps it only if a model then errs less on data that it did not see. `rate`
 //! tests whether the material depends on rate. `report` records what was done.
 
+mod alike;
 mod band;
+mod change;
+mod disagree;
 mod doubt;
+mod fill;
 mod judge;
 mod lag;
 mod options;
@@ -38,6 +42,8 @@ use crate::series::NOISE;
 use crate::series::filter::low_pass;
 use crate::series::noise::noise;
 use crate::series::range;
+use alike::Alike;
+use change::Change;
 use judge::Judge;
 
 /// Prepares a recording for [`crate::Fit`] and reports what was done, and what each step gained. It
@@ -155,33 +161,34 @@ impl Clock {
         self.step.map_or(1.0, |step| 1.0 / step)
     }
 
-    /// The recording with equal steps of time, if it needs them.
-    fn equal(&self, work: &Recording) -> Result<Recording> {
-        let mut even = work.clone();
-        if let (Step::Auto, Some(time), Some(step)) = (self.how, &work.time, self.step)
-            && resample::irregular(time)
-        {
-            resample::fits(time)?;
-            resample::resample(&mut even, step)?;
+    /// The recording with equal steps of time; `None` if its steps are equal enough.
+    fn equal(&self, work: &Recording) -> Result<Option<Recording>> {
+        let (Step::Auto, Some(time), Some(step)) = (self.how, &work.time, self.step) else {
+            return Ok(None);
+        };
+        if !resample::irregular(time) {
+            return Ok(None);
         }
-        Ok(even)
+        resample::fits(time)?;
+        let mut even = work.clone();
+        resample::resample(&mut even, step)?;
+        Ok(Some(even))
     }
 
-    /// Takes a candidate that was asked for, or that is worth it.
-    fn offer(
-        &mut self,
-        name: &'static str,
-        how: Step,
-        work: &mut Recording,
-        candidate: Recording,
-        judge: &mut Judge<'_>,
-    ) -> bool {
-        let resampled = candidate.time != work.time;
-        let taken = judge.offer(name, how, work, candidate);
-        if taken && resampled {
-            self.resampled = self.step;
+    /// What it takes to give a series other `values`, which are those of an equal recording.
+    fn change(even: Option<Recording>, series: usize, values: Vec<f64>) -> Change {
+        let change = match series {
+            0 => Change::Input(values),
+            _ => Change::Output(values),
+        };
+        match even {
+            None => change,
+            Some(mut even) => {
+                let mut change = change;
+                change.swap(&mut even);
+                Change::Resampled(Box::new(even))
+            }
         }
-        taken
     }
 }
 
@@ -195,32 +202,54 @@ fn filter(
     if how == Step::Off {
         return Ok(None);
     }
+    fn series(recording: &Recording, n: usize) -> &[f64] {
+        [&recording.input, &recording.output][n]
+    }
+    let mut alike: Option<Alike> = None;
     let mut done = [None, None];
     for (n, name) in ["low-pass of the input", "low-pass of the output"]
         .into_iter()
         .enumerate()
     {
-        let (low, high) = range([&work.input, &work.output][n]);
+        let (low, high) = range(series(work, n));
         if how == Step::Auto && sigma[n] <= smooth::NEGLIGIBLE * (high - low) {
             continue;
         }
-        let mut candidate = clock.equal(work)?;
-        let values = [&mut candidate.input, &mut candidate.output]
-            .into_iter()
-            .nth(n);
-        let Some(values) = values else { continue };
         let rate = clock.rate();
         let cutoff = match how {
             Step::Value(cutoff) => Some(cutoff),
-            _ => smooth::cutoff_for(values, sigma[n])?.map(|cutoff| cutoff * rate),
+            _ => {
+                let even = clock.equal(work)?;
+                let values = series(even.as_ref().unwrap_or(work), n);
+                smooth::cutoff_for(values, sigma[n])?.map(|cutoff| cutoff * rate)
+            }
         };
         let Some(cutoff) = cutoff else { continue };
-        let smoothed = low_pass(values, rate, cutoff)?;
-        let removed = smooth::distance(values, &smoothed);
-        *values = smoothed;
-        if clock.offer(name, how, work, candidate, judge) {
-            done[n] = Some(Smoothed { cutoff, removed });
+        let smoothed = |recording: &Recording| -> Result<(Change, f64)> {
+            let even = clock.equal(recording)?;
+            let values = series(even.as_ref().unwrap_or(recording), n);
+            let smoothed = low_pass(values, rate, cutoff)?;
+            let removed = smooth::distance(values, &smoothed);
+            Ok((Clock::change(even, n, smoothed), removed))
+        };
+        let (mut change, removed) = smoothed(work)?;
+        let resamples = matches!(change, Change::Resampled(_));
+        if how == Step::Auto {
+            if alike.is_none() {
+                alike = Alike::new(work, sigma);
+            }
+            let Some(alike) = &mut alike else { continue };
+            let (like, _) = smoothed(alike.noisy())?;
+            if !alike.offer(name, work, (change, like), judge) {
+                continue;
+            }
+        } else {
+            judge.take(work, &mut change);
         }
+        if resamples {
+            clock.resampled = clock.step;
+        }
+        done[n] = Some(Smoothed { cutoff, removed });
     }
     let [input, output] = done;
     Ok(Some(LowPass {
@@ -251,12 +280,13 @@ fn undo_lag(
             "a sensor lag needs a time column in which time passes",
         ));
     };
-    let mut candidate = clock.equal(work)?;
+    let even = clock.equal(work)?;
+    let equal = even.as_ref().unwrap_or(work);
     let mut report = SensorLag::default();
     let tau = match how {
         Step::Value(tau) => Some(tau),
         _ => {
-            let found = lag::estimate(&candidate, step, progress)?;
+            let found = lag::estimate(equal, step, progress)?;
             let gain = 1.0 - found.rmse_after / found.rmse_before;
             report.estimate = Some(found.tau);
             report.rmse_before = Some(found.rmse_before);
@@ -265,9 +295,15 @@ fn undo_lag(
         }
     };
     if let Some(tau) = tau {
-        candidate.input = lag::undo(&candidate.input, step, tau)?;
-        let taken = clock.offer("lag of the sensor", how, work, candidate, judge);
-        report.undone = taken.then_some(tau);
+        let undone = lag::undo(&equal.input, step, tau)?;
+        let resamples = even.is_some();
+        let change = Clock::change(even, 0, undone);
+        if judge.offer("lag of the sensor", how, work, change) {
+            report.undone = Some(tau);
+            if resamples {
+                clock.resampled = clock.step;
+            }
+        }
     }
     Ok(Some(report))
 }
@@ -294,8 +330,7 @@ fn settle(
             size
         }
         Step::Auto => {
-            // The largest of n Gaussian values (Donoho & Johnstone 1994), on both sides.
-            let reach = 2.0 * (2.0 * (work.len() as f64).ln()).sqrt() * left;
+            let reach = band::reach(work.len(), left);
             // Flicker of a meter between two neighbouring readings is not a reversal.
             let (low, high) = range(&work.input);
             let flicker = band::resolution_with_rounding(&work.input);
@@ -306,9 +341,9 @@ fn settle(
         }
     };
     let before = work.input.clone();
-    let mut candidate = work.clone();
-    band::settle(&mut candidate.input, size);
-    judge.offer("dead band of the input", how, work, candidate);
+    let mut settled = before.clone();
+    band::settle(&mut settled, size);
+    judge.offer("dead band of the input", how, work, Change::Input(settled));
     let pairs = || before.iter().zip(&work.input);
     Ok(Some(DeadBand {
         size,

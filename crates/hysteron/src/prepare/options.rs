@@ -17,7 +17,8 @@ pub enum Step {
 /// The steps of [`prepare`](crate::prepare()), in their order.
 ///
 /// A step that is `auto` is taken only if it lowers the error of a model on parts of the recording
-/// that the model was not fitted to. A step with a value is taken as it is.
+/// that the model was not fitted to; a low-pass, only if it does so on a simulated recording like
+/// this one, with the noise found. A step with a value is taken as it is.
 ///
 /// | field | default | value | unit |
 /// | --- | --- | --- | --- |
@@ -34,7 +35,8 @@ pub struct PrepareOptions {
     /// readings over where no sign was lost, so it is done only where it is asked for.
     pub signs: bool,
     /// Removal of spikes. The value is the number of deviations from which on a sample is a spike.
-    /// Auto: 4, and also bursts of wrong readings.
+    /// Auto: 4, and also bursts of wrong readings, and readings that were held while the series
+    /// moved on.
     pub spikes: Step,
     /// Resampling to equal time steps of this length. Auto: the median step, and only if the time
     /// is irregular and a filter needs equal steps.

@@ -1,15 +1,14 @@
-//! Repairs single readings: lost signs where they are asked for, and spikes.
+//! Repairs single readings: lost signs where they are asked for, and readings that were lost.
 
+use super::change::Change;
+use super::fill;
 use super::judge::Judge;
 use super::options::{PrepareOptions, Step};
 use super::report::{Repairs, Spikes};
 use super::sign;
 use crate::recording::Recording;
-use crate::series::jumps::remove_bursts;
-use crate::series::spikes::{self, DEVIATIONS};
-
-/// Rounds of one repair: a spike beside another one is seen only when that one is gone.
-const ROUNDS: usize = 4;
+use crate::series::lost::wrong;
+use crate::series::spikes::DEVIATIONS;
 
 pub(super) fn repair(
     work: &mut Recording,
@@ -19,33 +18,34 @@ pub(super) fn repair(
     if !options.signs && options.spikes == Step::Off {
         return None;
     }
+    let mut signs = [Vec::new(), Vec::new()];
+    if options.signs {
+        signs = [&mut work.input, &mut work.output].map(|values| sign::restore(values));
+    }
     let deviations = match options.spikes {
         Step::Off => None,
         Step::Auto => Some(DEVIATIONS),
         Step::Value(deviations) => Some(deviations),
     };
-    let mut signs = [Vec::new(), Vec::new()];
-    if options.signs {
-        signs = [&mut work.input, &mut work.output].map(|values| sign::restore(values));
+    if options.spikes == Step::Auto {
+        judge.ignore(wrong(&work.output, None, DEVIATIONS, true));
     }
-    let mut of = |signs: &[usize], name, series: fn(&mut Recording) -> &mut Vec<f64>| {
-        let spikes = deviations
-            .map(|deviations| remove(work, name, series, options.spikes, deviations, judge));
-        Repairs::new(signs, &spikes.unwrap_or_default())
+    let mut of = |input: bool| {
+        let removed = deviations.map(|above| remove(work, input, options.spikes, above, judge));
+        Repairs::new(&signs[usize::from(!input)], &removed.unwrap_or_default())
     };
     Some(Spikes {
         deviations,
-        input: of(&signs[0], "spikes of the input", |work| &mut work.input),
-        output: of(&signs[1], "spikes of the output", |work| &mut work.output),
+        input: of(true),
+        output: of(false),
     })
 }
 
-/// Replaces the spikes of one series. Those that are left to the data are taken with bursts, or
-/// without them, or not at all.
+/// Replaces what was lost of one series. What is left to the data is taken with bursts and held
+/// readings, or with spikes alone, or not at all.
 fn remove(
     work: &mut Recording,
-    name: &'static str,
-    series: fn(&mut Recording) -> &mut Vec<f64>,
+    input: bool,
     how: Step,
     deviations: f64,
     judge: &mut Judge<'_>,
@@ -54,30 +54,29 @@ fn remove(
         Step::Auto => &[true, false],
         _ => &[false],
     };
-    let mut tried = None;
-    for bursts in kinds {
-        let mut candidate = work.clone();
-        let values = series(&mut candidate);
-        let mut found = Vec::new();
-        for _ in 0..if how == Step::Auto { ROUNDS } else { 1 } {
-            let before = found.len();
-            if *bursts {
-                found.extend(remove_bursts(values));
-            }
-            found.extend(spikes::remove(values, deviations));
-            if found.len() == before {
-                break;
-            }
-        }
-        found.sort_unstable();
-        found.dedup();
-        if tried.as_ref() == Some(&found) {
+    let mut tried = Vec::new();
+    for runs in kinds {
+        let found = match input {
+            true => wrong(&work.input, Some(&work.output), deviations, *runs),
+            false => wrong(&work.output, None, deviations, *runs),
+        };
+        if found.is_empty() || found == tried {
             break;
         }
-        if judge.offer(name, how, work, candidate) {
+        let (name, change) = match input {
+            true => (
+                "spikes of the input",
+                Change::Input(fill::input(work, &found)),
+            ),
+            false => (
+                "spikes of the output",
+                Change::Output(fill::output(work, &found)),
+            ),
+        };
+        if judge.offer(name, how, work, change) {
             return found;
         }
-        tried = Some(found);
+        tried = found;
     }
     Vec::new()
 }

@@ -1,6 +1,8 @@
 //! Gaps in the time of a recording.
 
-use crate::series::{branches, range};
+use crate::series::clear_branches;
+use crate::series::lost::Turn;
+use crate::series::spread::usual_span;
 
 /// The median time step, and the indices of samples that follow a gap: a step of more than three
 /// times the median.
@@ -18,8 +20,6 @@ pub(crate) fn gaps(time: &[f64]) -> Option<(f64, Vec<usize>)> {
 /// A gap is long if the input may have turned in it unseen: more than half of what it takes from
 /// one reversal to the next, and more than so many times the median step.
 const LONG: f64 = 10.0;
-/// Smaller reversals than this share of the input's range are none.
-const TURN: f64 = 0.05;
 
 /// The indices of samples that follow a long gap.
 pub(crate) fn long_gaps(time: &[f64], input: &[f64]) -> Vec<usize> {
@@ -32,8 +32,28 @@ pub(crate) fn long_gaps(time: &[f64], input: &[f64]) -> Vec<usize> {
         return found;
     };
     let seen = last - first - found.iter().map(|&n| step(n)).sum::<f64>();
-    let (low, high) = range(input);
-    let turns = branches(input, TURN * (high - low)).len().max(1);
-    found.retain(|&n| step(n) > 0.5 * seen / turns as f64);
+    let branch = seen / clear_branches(input) as f64;
+    found.retain(|&n| step(n) > 0.5 * branch);
+    found
+}
+
+/// An input that went on unseen by more than this share of its usual range, and came back, has
+/// turned in a way that a model remembers.
+const BEYOND: f64 = 0.02;
+
+/// The indices of samples that follow a gap in which the input turned: it comes back from where it
+/// went, and where its ways before and after meet is beyond both readings.
+pub(crate) fn turned_in_gaps(time: &[f64], input: &[f64]) -> Vec<usize> {
+    let Some((median, mut found)) = gaps(time) else {
+        return Vec::new();
+    };
+    let far = BEYOND * usual_span(input);
+    found.retain(|&n| {
+        let length = (time[n] - time[n - 1]) / median;
+        let turn = Turn::between(&input[..n], &input[n..], length);
+        turn.is_some_and(|Turn { at, rises: [a, b] }| {
+            (a * at).abs().min((b * (length - at)).abs()) > far
+        })
+    });
     found
 }

@@ -6,7 +6,7 @@
 mod gaps;
 mod split;
 
-pub(crate) use gaps::{gaps, long_gaps};
+pub(crate) use gaps::{gaps, long_gaps, turned_in_gaps};
 pub use split::{HoldOut, Split};
 
 use crate::error::{Error, Result};

@@ -1,6 +1,7 @@
 //! Finds a channel that stands still while the other one moves.
 
-use crate::series::spread::usual_span;
+use crate::series::lost::{half_a_branch, held};
+use crate::series::spread::{range, usual_span};
 use std::ops::Range;
 
 /// Fewer equal readings in a row are not told from a slow signal.
@@ -13,7 +14,8 @@ const FAR: f64 = 0.8;
 /// long runs.
 const OFTEN: f64 = 0.5;
 
-/// The samples over which `values` keeps exactly one value while `other` moves far.
+/// The samples over which `values` keeps exactly one value while `other` moves far, or for so long
+/// that it may have turned twice, and then goes on elsewhere.
 ///
 /// Frozen are readings of a sensor that lost its contact or of a logger that goes on with the last
 /// value. A series that moves in steps is not frozen between them.
@@ -25,17 +27,30 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
     });
     let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
     let far = FAR * usual_span(other);
+    // A drive may rest at the end of its range before an experiment, while what it moves settles.
+    let (low, high) = range(values);
+    let not_begun = |run: &Range<usize>| run.start == 0 && [low, high].contains(&values[0]);
     let moves_far = |run: &Range<usize>| {
         let (rise, fall) = rise_and_fall(&other[run.clone()]);
-        far > 0.0 && rise.min(fall) >= far
+        far > 0.0 && rise.min(fall) >= far && !not_begun(run)
     };
     let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(moves_far);
     let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
     let others = values.len() - count(&still);
-    match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
+    let mut found = match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
         true => Vec::new(),
         false => still,
+    };
+    let longest = half_a_branch(values);
+    for run in held(values, None)
+        .into_iter()
+        .filter(|run| run.len() > longest)
+    {
+        if found.iter().all(|other| !other.contains(&run.start)) {
+            found.push(run);
+        }
     }
+    found
 }
 
 /// How far a series rises from a value before, at most, and how far it falls.

@@ -2,14 +2,15 @@
 //!
 //! `turning` finds turning points and the direction of each sample. `filter` is the low-pass
 //! filter. `errors` compares two series. `noise` estimates white noise, and
-//! `spikes` finds isolated readings, `jumps` jumps and bursts of wrong readings, `frozen` a channel
-//! that stands still, and `repeated` rows that come twice. `spread` gives range, mean and standard
+//! `spikes` finds isolated readings, `jumps` jumps and bursts of wrong readings, `lost` all readings
+//! that are wrong, `frozen` a channel that stands still, and `repeated` rows that come twice. `spread` gives range, mean and standard
 //! deviation. `runs` keeps values that change seldom.
 
 mod errors;
 pub mod filter;
 pub(crate) mod frozen;
 pub(crate) mod jumps;
+pub(crate) mod lost;
 pub(crate) mod noise;
 pub(crate) mod repeated;
 mod runs;
@@ -23,5 +24,5 @@ mod turning;
 pub use errors::Errors;
 pub(crate) use runs::Runs;
 pub use spread::{mean_and_deviation, range};
-pub(crate) use turning::branch_spans;
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};
+pub(crate) use turning::{branch_spans, clear_branches};

@@ -6,8 +6,8 @@ use std::ops::Range;
 
 /// Fewer equal rows in a row may be chance.
 const SHORTEST: usize = 8;
-/// Where a block begins again, the series go back by more than so many times their usual steps. A
-/// cycle that repeats exactly goes on smoothly.
+/// Where a block begins again, the series go back by more than so many times their usual steps, and
+/// where it ends they go forward. A cycle that repeats exactly goes on smoothly, also after a gap.
 const SEAM: f64 = 3.0;
 
 /// A block of rows, and the rows before it that are the same.
@@ -28,7 +28,8 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
         let step = |values: &[f64]| (values[n] - values[n - 1]).abs();
         n > 0 && (step(input) > seams[0] || step(output) > seams[1])
     };
-    let mut first: HashMap<[(u64, u64); SHORTEST], usize> = HashMap::new();
+    // Where rows like these stood first, and where they stood last.
+    let mut places: HashMap<[(u64, u64); SHORTEST], (usize, usize)> = HashMap::new();
     let mut found = Vec::new();
     let mut n = 0;
     while n + SHORTEST <= len {
@@ -36,15 +37,30 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
             n += 1;
             continue;
         }
-        let earlier = *first.entry(key(n)).or_insert(n);
-        if earlier == n || !is_seam(n) {
+        let place = places.entry(key(n)).or_insert((n, n));
+        let (first, last) = *place;
+        place.1 = n;
+        if first == n || !is_seam(n) {
             n += 1;
             continue;
         }
-        let same = (0..len - n).take_while(|k| row(earlier + k) == row(n + k));
-        let count = same.count();
-        found.push((n..n + count, earlier..earlier + count));
-        n += count;
+        let same = |earlier: usize| {
+            let count = (0..len - n)
+                .take_while(|k| row(earlier + k) == row(n + k))
+                .count();
+            (n..n + count, earlier..earlier + count)
+        };
+        // The rows go on where the earlier ones ended, or elsewhere.
+        let goes_back = |(again, of): &Repeated| {
+            of.end >= again.start || again.end == len || is_seam(again.end)
+        };
+        match [last, first].map(same).into_iter().find(goes_back) {
+            Some(block) => {
+                n = block.0.end;
+                found.push(block);
+            }
+            None => n += 1,
+        }
     }
     found
 }

@@ -1,5 +1,6 @@
 //! Turning points of a series, found while small reversals are ignored as noise.
 
+use crate::series::spread::usual_span;
 use hysteron_core::Direction;
 use std::iter::repeat_n;
 use std::ops::Range;
@@ -113,6 +114,16 @@ pub(crate) fn branch_spans(series: &[f64], tolerance: f64) -> impl Iterator<Item
     });
     // With a tolerance below zero a sample may turn twice.
     spans.filter(|samples| !samples.is_empty())
+}
+
+/// A clear reversal is larger than this share of the usual range.
+const CLEAR: f64 = 0.05;
+
+/// The number of branches between clear reversals; at least one.
+pub(crate) fn clear_branches(series: &[f64]) -> usize {
+    branch_spans(series, CLEAR * usual_span(series))
+        .count()
+        .max(1)
 }
 
 /// The indices of the samples that hysteresis operators remember at the end of a series, ascending.

@@ -123,22 +123,38 @@ fn without(problem: &mut Problem<'_>, kept: &[f64]) -> Result<Vec<f64>> {
     Ok(states.map(|h| offset + fitted.sign.factor() * h).collect())
 }
 
-/// The output at each sample of one recording, from the fit that left its fold out.
+/// The output at each sample of one recording, from the fit that left its fold out. Samples without
+/// a fold are in no fit; the first predicts them.
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
 pub(crate) fn predicted_without(
     recording: &Recording,
     options: &FitOptions,
-    fold: &[usize],
+    fold: &[Option<usize>],
 ) -> Result<Vec<f64>> {
     let mut problem = Problem::new(std::slice::from_ref(recording), options)?;
     let mut predicted = vec![0.0; recording.len()];
-    for f in 0..=fold.iter().copied().max().unwrap_or(0) {
-        let kept: Vec<f64> = fold.iter().map(|g| f64::from(*g != f)).collect();
+    for f in 0..=fold.iter().copied().flatten().max().unwrap_or(0) {
+        let kept = |g: &Option<usize>| f64::from(g.is_some_and(|g| g != f));
+        let kept: Vec<f64> = fold.iter().map(kept).collect();
         let outputs = without(&mut problem, &kept)?;
-        let own = (0..predicted.len()).filter(|n| fold[*n] == f);
+        let own = (0..predicted.len()).filter(|n| fold[*n].unwrap_or(0) == f);
         own.for_each(|n| predicted[n] = outputs[n]);
     }
     Ok(predicted)
+}
+
+/// The output at each sample of one recording, from a fit to the samples that are `kept`: 1, or 0
+/// for those that are not.
+///
+/// # Errors
+/// As [`crate::Fit::run`].
+pub(crate) fn predicted_from(
+    recording: &Recording,
+    options: &FitOptions,
+    kept: &[f64],
+) -> Result<Vec<f64>> {
+    let mut problem = Problem::new(std::slice::from_ref(recording), options)?;
+    without(&mut problem, kept)
 }

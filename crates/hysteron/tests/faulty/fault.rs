@@ -3,7 +3,7 @@
 use hysteron::{Recording, range};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// A class of faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,23 +18,23 @@ pub enum Fault {
     Held,
     /// Rows are missing.
     Missing,
-    /// The output stands still for a third of the recording.
+    /// The output stands still for long.
     FrozenOutput,
-    /// The input stands still for a third of the recording.
+    /// The input stands still for long.
     FrozenInput,
     /// The clock steps forward.
     ClockForward,
     /// The clock steps back.
     ClockBack,
-    /// A coarse converter: steps of a hundredth of the range.
+    /// A coarse converter.
     Quantised,
-    /// Columns are exchanged in a quarter of the rows.
+    /// Columns are exchanged in many rows.
     Swapped,
     /// Blocks of rows come twice.
     Repeated,
-    /// A quarter of the inputs is in °F instead of °C.
+    /// Many inputs are in °F instead of °C.
     InputUnit,
-    /// A quarter of the outputs is in inches instead of mm.
+    /// Many outputs are in inches instead of mm.
     OutputUnit,
     /// White noise on both series.
     Noise,
@@ -66,42 +66,49 @@ impl Fault {
     /// Its name in a table.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Spikes => "18 spikes of either sign",
-            Self::Bursts => "6 bursts of 4 to 8 readings",
-            Self::Zeros => "3 dropouts to zero, 5 to 20 readings",
-            Self::Held => "3 dropouts that hold the value, 5 to 20 readings",
-            Self::Missing => "rows missing, 5 times 1 to 20",
-            Self::FrozenOutput => "output frozen for a third",
-            Self::FrozenInput => "input frozen for a third",
+            Self::Spikes => "3 to 30 spikes of either sign",
+            Self::Bursts => "2 to 8 bursts of 4 to 8 readings",
+            Self::Zeros => "2 to 4 dropouts to zero, 5 to 20 readings",
+            Self::Held => "2 to 4 dropouts that hold the value, 5 to 20 readings",
+            Self::Missing => "rows missing, 2 to 6 times 1 to 20",
+            Self::FrozenOutput => "output frozen for a sixth to a third",
+            Self::FrozenInput => "input frozen for a sixth to a third",
             Self::ClockForward => "clock steps forward by a tenth",
             Self::ClockBack => "clock steps back by a tenth",
-            Self::Quantised => "readings in steps of 1 % of the range",
-            Self::Swapped => "columns exchanged in a quarter of the rows",
-            Self::Repeated => "two blocks of 40 rows twice",
-            Self::InputUnit => "a quarter of the inputs in °F",
-            Self::OutputUnit => "a quarter of the outputs in inches",
-            Self::Noise => "noise of 1 % of the range on both",
+            Self::Quantised => "readings in steps of 0.5 to 1 % of the range",
+            Self::Swapped => "columns exchanged in a sixth to a third of the rows",
+            Self::Repeated => "1 to 3 blocks of 20 to 60 rows twice",
+            Self::InputUnit => "a sixth to a third of the inputs in °F",
+            Self::OutputUnit => "a sixth to a third of the outputs in inches",
+            Self::Noise => "noise of 0.5 to 1 % of the range on both",
             Self::Everything => "spikes, bursts, zeros, missing rows and noise",
         }
+    }
+
+    /// Whether readings carry noise after it, which no preparation takes away altogether.
+    pub fn is_noisy(self) -> bool {
+        matches!(self, Self::Quantised | Self::Noise | Self::Everything)
     }
 
     /// The recording with this fault.
     pub fn put_into(self, clean: &Recording, rng: &mut ChaCha8Rng) -> Recording {
         let mut dirty = clean.clone();
         let len = clean.len();
-        let mut spans = |count: usize, lengths: Range<usize>| -> Vec<Range<usize>> {
+        let mut spans = |counts: RangeInclusive<usize>, lengths: RangeInclusive<usize>| {
+            let count = rng.random_range(counts);
             let span = |_| {
                 let length = rng.random_range(lengths.clone());
                 let start = rng.random_range(20..len - 20 - length);
                 start..start + length
             };
-            (0..count).map(span).collect()
+            (0..count).map(span).collect::<Vec<Range<usize>>>()
         };
+        let large = len / 6..=len / 3;
         match self {
             Self::Spikes | Self::Bursts => {
                 let spans = match self {
-                    Self::Spikes => spans(18, 1..2),
-                    _ => spans(6, 4..9),
+                    Self::Spikes => spans(3..=30, 1..=1),
+                    _ => spans(2..=8, 4..=8),
                 };
                 for (n, span) in spans.into_iter().enumerate() {
                     let series = series(&mut dirty, n % 2 == 0);
@@ -115,30 +122,30 @@ impl Fault {
                 }
             }
             Self::Zeros => {
-                for (n, span) in spans(3, 5..21).into_iter().enumerate() {
+                for (n, span) in spans(2..=4, 5..=20).into_iter().enumerate() {
                     series(&mut dirty, n % 2 == 0)[span].fill(0.0);
                 }
             }
             Self::Held => {
-                for (n, span) in spans(3, 5..21).into_iter().enumerate() {
+                for (n, span) in spans(2..=4, 5..=20).into_iter().enumerate() {
                     let series = series(&mut dirty, n % 2 == 0);
                     let value = series[span.start];
                     series[span].fill(value);
                 }
             }
             Self::Missing => {
-                let gone = spans(5, 1..21);
+                let gone = spans(2..=6, 1..=20);
                 let kept = |n: usize| !gone.iter().any(|span| span.contains(&n));
                 dirty = clean.only(kept).unwrap_or(dirty);
             }
             Self::FrozenOutput | Self::FrozenInput => {
-                let span = spans(1, len / 3..len / 3 + 1).remove(0);
+                let span = spans(1..=1, large).remove(0);
                 let series = series(&mut dirty, self == Self::FrozenInput);
                 let value = series[span.start];
                 series[span].fill(value);
             }
             Self::ClockForward | Self::ClockBack => {
-                let at = spans(1, 1..2).remove(0).start;
+                let at = spans(1..=1, 1..=1).remove(0).start;
                 let sign = if self == Self::ClockBack { -1.0 } else { 1.0 };
                 if let Some(time) = &mut dirty.time {
                     let step = sign * 0.1 * (time[len - 1] - time[0]);
@@ -146,22 +153,23 @@ impl Fault {
                 }
             }
             Self::Quantised => {
+                let share = rng.random_range(0.005..0.01);
                 for values in [&mut dirty.input, &mut dirty.output] {
                     let (low, high) = range(values);
-                    let step = 0.01 * (high - low);
+                    let step = share * (high - low);
                     values
                         .iter_mut()
                         .for_each(|v| *v = (*v / step).round() * step);
                 }
             }
             Self::Swapped => {
-                let span = spans(1, len / 4..len / 4 + 1).remove(0);
+                let span = spans(1..=1, large).remove(0);
                 dirty.input[span.clone()].copy_from_slice(&clean.output[span.clone()]);
                 dirty.output[span.clone()].copy_from_slice(&clean.input[span]);
             }
             Self::Repeated => {
                 let mut rows: Vec<usize> = (0..len).collect();
-                let mut blocks = spans(2, 40..41);
+                let mut blocks = spans(1..=3, 20..=60);
                 blocks.sort_by_key(|block| std::cmp::Reverse(block.start));
                 for block in blocks {
                     rows.splice(block.end..block.end, block);
@@ -176,7 +184,7 @@ impl Fault {
                 });
             }
             Self::InputUnit | Self::OutputUnit => {
-                let span = spans(1, len / 4..len / 4 + 1).remove(0);
+                let span = spans(1..=1, large).remove(0);
                 let convert: fn(&mut f64) = match self {
                     Self::InputUnit => |t| *t = 1.8 * *t + 32.0,
                     _ => |y| *y /= 25.4,
@@ -185,11 +193,12 @@ impl Fault {
                 series[span].iter_mut().for_each(convert);
             }
             Self::Noise => {
+                let share = rng.random_range(0.005..0.01);
                 for values in [&mut dirty.input, &mut dirty.output] {
                     let (low, high) = range(values);
                     // Twelve uniform numbers make a Gaussian one.
                     let mut gaussian = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
-                    let sigma = 0.01 * (high - low);
+                    let sigma = share * (high - low);
                     values.iter_mut().for_each(|v| *v += sigma * gaussian());
                 }
             }

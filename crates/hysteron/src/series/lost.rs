@@ -1,0 +1,208 @@
+//! Finds readings that were lost: spikes, bursts of them, and stretches in which the logger went on
+//! with the last reading, or with a fixed value.
+
+use crate::series::clear_branches;
+use crate::series::jumps::remove_bursts;
+use crate::series::noise::median_of;
+use crate::series::spikes;
+use crate::series::spread::{range, usual_span};
+use std::ops::Range;
+
+/// Fewer equal readings in a row are not told from a slow signal.
+const SHORTEST: usize = 4;
+/// Where a series comes back, it steps so many times further than nearby.
+const STEP: f64 = 2.0;
+/// The other series moves by this share of its usual range meanwhile.
+const MOVES: f64 = 0.02;
+/// A series that rests for more than this share of its samples is one of steps, or a coarse one.
+const RESTS: f64 = 0.02;
+/// More than this share of the samples cannot be lost.
+const MOST: f64 = 0.5;
+
+/// Number of steps on either side that tell where a series goes.
+const STEPS: usize = 6;
+
+/// Rounds of the search: what stands beside a wrong reading is seen only when that one is gone.
+const ROUNDS: usize = 4;
+
+/// The samples over which `values` keeps exactly one value and then goes on elsewhere, or while
+/// the series that follows it, if any, moves. None in a series that often rests.
+pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>> {
+    let mut end = 0;
+    let runs = values.chunk_by(|a, b| a == b).map(|run| {
+        end += run.len();
+        end - run.len()..end
+    });
+    let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
+    if long.is_empty() {
+        return long;
+    }
+    let step = |n: usize| (values[n] - values[n - 1]).abs();
+    let nearby = |run: &Range<usize>| {
+        let before = (run.start.saturating_sub(STEPS) + 1..run.start).map(step);
+        let after = (run.end + 1..values.len().min(run.end + STEPS)).map(step);
+        before.chain(after).fold(0.0, f64::max)
+    };
+    let jumps = |run: &Range<usize>, n: usize| {
+        (1..values.len()).contains(&n) && step(n) > STEP * nearby(run)
+    };
+    // A drive may rest at the end of its range, while what it moved goes back.
+    let (low, high) = range(values);
+    let rests = |value: f64| value == low || value == high;
+    let far = MOVES * follower.map_or(0.0, usual_span);
+    let is_left_behind = |run: &Range<usize>| {
+        follower.is_some_and(|follower| {
+            let (low, high) = range(&follower[run.clone()]);
+            high - low > far && !rests(values[run.start])
+        })
+    };
+    let lost = |run: &Range<usize>| jumps(run, run.end) || is_left_behind(run);
+    let (held, rests): (Vec<_>, Vec<_>) = long.into_iter().partition(lost);
+    let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>() as f64;
+    let len = values.len() as f64;
+    if count(&rests) > RESTS * len || count(&held) > MOST * len {
+        return Vec::new();
+    }
+    // The first reading of a run was right if the series came there by a usual step.
+    let begin = |run: &Range<usize>| match jumps(run, run.start) {
+        true => run.start,
+        false => run.start + 1,
+    };
+    held.iter().map(|run| begin(run)..run.end).collect()
+}
+
+/// The number of samples in a row within which a series hardly turns twice: half of what it takes
+/// from one reversal to the next.
+pub(crate) fn half_a_branch(values: &[f64]) -> usize {
+    values.len() / (2 * clear_branches(values))
+}
+
+/// The samples whose readings are wrong, ascending: those far from where their neighbours lead by
+/// more than `deviations`, and with `runs` also bursts of them, and readings that were held for no
+/// longer than half a branch. `follower` is the output, for an input.
+pub(crate) fn wrong(
+    values: &[f64],
+    follower: Option<&[f64]>,
+    deviations: f64,
+    runs: bool,
+) -> Vec<usize> {
+    let mut found: Vec<usize> = Vec::new();
+    let mut values = values.to_vec();
+    if runs {
+        let longest = half_a_branch(&values);
+        let held = held(&values, follower).into_iter();
+        for run in held.filter(|run| run.len() <= longest) {
+            fill(&mut values, &run);
+            found.extend(run);
+        }
+    }
+    for _ in 0..if runs { ROUNDS } else { 1 } {
+        let before = found.len();
+        if runs {
+            found.extend(remove_bursts(&mut values));
+        }
+        found.extend(spikes::remove(&mut values, deviations));
+        if found.len() == before {
+            break;
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Puts a line between the neighbours in place of a run of samples.
+pub(crate) fn fill(values: &mut [f64], run: &Range<usize>) {
+    let (before, after) = ends(values, run);
+    let length = (run.len() + 1) as f64;
+    for (n, value) in (1_u32..).zip(&mut values[run.clone()]) {
+        *value = before + (after - before) * f64::from(n) / length;
+    }
+}
+
+/// The values beside a run of samples; at an end of the series, the one on the other side.
+pub(crate) fn ends(values: &[f64], run: &Range<usize>) -> (f64, f64) {
+    let before = run.start.checked_sub(1).map(|n| values[n]);
+    let after = values.get(run.end).copied();
+    let either = before.or(after).unwrap_or(values[run.start]);
+    (before.unwrap_or(either), after.unwrap_or(either))
+}
+
+/// Where a series turned between two stretches, `length` steps apart: how many steps after the
+/// first, at a rise of how much a step before and after. The lines along which it went meet there.
+#[derive(Debug)]
+pub(crate) struct Turn {
+    pub(crate) at: f64,
+    pub(crate) rises: [f64; 2],
+}
+
+impl Turn {
+    /// `None` if the series goes on in the same direction, or the lines do not meet in between.
+    pub(crate) fn between(before: &[f64], after: &[f64], length: f64) -> Option<Self> {
+        let before = &before[before.len().saturating_sub(STEPS + 1)..];
+        let after = &after[..after.len().min(STEPS + 1)];
+        let (Some(last), Some(first)) = (before.last(), after.first()) else {
+            return None;
+        };
+        let [a, b] = [before, after].map(rise);
+        // last + a t = first − b (length − t)
+        let at = (first - last - b * length) / (a - b);
+        (a * b < 0.0 && (0.0..=length).contains(&at)).then_some(Self { at, rises: [a, b] })
+    }
+}
+
+/// The slope of the line through a short series, per step: the median of those between all pairs
+/// (Theil 1950, Sen 1968).
+fn rise(values: &[f64]) -> f64 {
+    let pairs = (1..values.len()).flat_map(|n| (0..n).map(move |m| (m, n)));
+    let slopes = pairs.map(|(m, n)| (values[n] - values[m]) / (n - m) as f64);
+    median_of(slopes.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn swings() -> Vec<f64> {
+        (0..2000)
+            .map(|n| 40.0 * (f64::from(n) * 0.02).sin())
+            .collect()
+    }
+
+    #[test]
+    fn readings_that_were_held_are_found_and_rests_are_not() {
+        let clean = swings();
+        assert_eq!(held(&clean, None), []);
+        // The last reading, and a fixed value.
+        let mut read = clean.clone();
+        read[300..310].fill(clean[300]);
+        read[700..715].fill(3.0);
+        assert_eq!(held(&read, None), [301..310, 700..715]);
+        // Held over a turning point (at 1021): seen only by what follows the series.
+        let mut read = clean.clone();
+        read[1015..1028].fill(clean[1014]);
+        assert_eq!(held(&read, None), []);
+        let follower: Vec<f64> = (0..2000).map(f64::from).collect();
+        assert_eq!(held(&read, Some(&follower)), [1015..1028]);
+        // A drive that is off; steps; a coarse reading.
+        let mut off = clean.clone();
+        off[1500..].fill(-40.0);
+        let steps: Vec<f64> = (0..2000).map(|n| f64::from(n / 50 % 7)).collect();
+        let coarse: Vec<f64> = clean.iter().map(|x| x.round()).collect();
+        for rests in [off, steps, coarse, vec![1.0; 9], vec![]] {
+            assert_eq!(held(&rests, Some(&follower[..rests.len()])), []);
+        }
+    }
+
+    #[test]
+    fn a_series_turns_where_its_ways_meet() {
+        let rising: Vec<f64> = (0..10).map(f64::from).collect();
+        let falling: Vec<f64> = (0..10).map(|n| 12.0 - 2.0 * f64::from(n)).collect();
+        // From 9 on for 5 steps to 14, and from there back for 1 step.
+        let turn = Turn::between(&rising, &falling, 6.0).map(|turn| (turn.at, turn.rises));
+        assert_eq!(turn, Some((5.0, [1.0, -2.0])));
+        assert!(Turn::between(&rising, &rising, 6.0).is_none());
+        assert!(Turn::between(&rising, &falling, 1.0).is_none());
+        assert!(Turn::between(&[], &falling, 1.0).is_none());
+    }
+}
