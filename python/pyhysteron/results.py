@@ -919,6 +919,8 @@ class RecordingSummary(_Result):
     ----------
     samples : int
         Number of samples.
+    segments : int
+        Number of recordings: each has a history of its own.
     input : SeriesSummary
         The input.
     output : SeriesSummary
@@ -944,6 +946,7 @@ class RecordingSummary(_Result):
     """
 
     samples: int
+    segments: int
     input: SeriesSummary
     output: SeriesSummary
     time: Sampling | None

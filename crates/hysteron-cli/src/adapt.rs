@@ -33,8 +33,8 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         time: args.time.as_deref(),
         load: None,
     };
-    let recording = recording::read(&args.data, columns, &args.repair)?;
-    let mut adapted = hysteron::adapt(&model, &recording, &args.into(), hysteron::Progress::NONE)?;
+    let recordings = recording::segments(&args.data, columns, &args.repair)?;
+    let mut adapted = hysteron::adapt(&model, &recordings, &args.into(), hysteron::Progress::NONE)?;
     if let Some(adapted) = adapted
         .model
         .fit
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         adapted["from"]["model"] = json!(args.model);
     }
     if let Some(table) = table {
-        adapted.write_table(&recording, table)?;
+        adapted.write_table(&recordings, table)?;
     }
     let refused = adapted.worse && !args.force.force;
     if !refused {

@@ -188,6 +188,10 @@ impl From<&Repair> for hysteron::ReadOptions {
 }
 
 impl Repair {
+    pub(crate) fn is_asked(&self) -> bool {
+        self.repair
+    }
+
     /// For tables that are read without repair.
     pub(crate) fn max_memory(&self) -> u64 {
         self.memory.limit()

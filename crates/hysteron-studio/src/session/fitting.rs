@@ -66,7 +66,7 @@ impl Session {
         };
         let mut recordings = Vec::new();
         for file in of(Purpose::Fit) {
-            recordings.push(Recording::clone(file.recording()?));
+            recordings.extend_from_slice(file.parts()?.all());
         }
         if recordings.is_empty() {
             return Err(Fault::missing(
@@ -79,7 +79,7 @@ impl Session {
             .collect();
         let mut others = Vec::new();
         for file in of(Purpose::Validate) {
-            others.push(Recording::clone(file.recording()?));
+            others.extend_from_slice(file.parts()?.all());
         }
         let mut validated = Vec::new();
         let (hold_out, words) = match (held, marked.is_empty()) {

@@ -1,4 +1,10 @@
 //! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
+//!
+//! This file tests one recording; `joined` makes one evaluation of those of several.
+
+mod joined;
+
+pub(crate) use joined::over_all;
 
 use crate::error::{Error, Result};
 use crate::identify::find_start;
@@ -14,8 +20,9 @@ use hysteron_core::Solution;
 /// output has moved further than the noise.
 const STILL: f64 = 2.0 * NOISE;
 
-/// Forward and inverse tests of a model on one recording. The series of the model are empty where
-/// only errors were asked for ([`evaluate_errors`]).
+/// Forward and inverse tests of a model on a recording, or on several. The series of the model are
+/// empty where only errors were asked for ([`evaluate_errors`]). Of several recordings they stand one
+/// after the other, and errors are over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// Modelled output, one value per sample.
@@ -24,8 +31,8 @@ pub struct Evaluation {
     pub forward: Errors,
     /// Number of inputs outside the plane.
     pub clipped: usize,
-    /// For a start that was unknown: the number of samples at the beginning of the recording from
-    /// which it was estimated.
+    /// For a start that was unknown: the number of samples at the beginning of each recording from
+    /// which it was estimated, all together.
     pub estimated_from: Option<usize>,
     /// Whether this is a recording that the model was fitted to. Then the errors say how well the
     /// model fits, not how well it predicts.
@@ -69,15 +76,30 @@ pub struct InverseRun {
 
 /// Runs `model` forward over the measured input, and its inverse over the measured output. Both
 /// start where the model does ([`Model::start`]), and use time and load of the recording as far as
-/// the model needs them.
+/// the model needs them. Several recordings are parts of one experiment, such as the segments of a
+/// file: the model starts anew in each.
 ///
 /// For a model with a thermal body, the inverse is tested behind the body: its result is compared
 /// with the temperature, because a drive that follows noise says nothing.
 ///
+/// ```
+/// use hysteron::{Model, Operator, Plane, Recording, Sign, evaluate};
+/// let plane = Plane::new(20.0, 80.0, 3)?;
+/// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+/// let input = vec![20.0, 80.0, 50.0];
+/// let recording = Recording::new(input.clone(), model.simulate(&input)?)?;
+/// let segments = [recording.clone(), recording];
+/// assert_eq!(evaluate(&model, &segments)?.forward.max_abs, 0.0);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
 /// # Errors
-/// [`crate::Error::Recording`] for an invalid recording; as [`Model::run_in`].
-pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
-    evaluate_from(model, recording, Start::Fitted)
+/// [`crate::Error::Recording`] for an invalid recording, or none; as [`Model::run_in`].
+pub fn evaluate(
+    model: &Model,
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
+) -> Result<Evaluation> {
+    evaluate_from(model, recordings, Start::Fitted)
 }
 
 /// As [`evaluate`], from another start. With [`Start::Unknown`], the start is the one that explains
@@ -85,8 +107,12 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
 ///
 /// # Errors
 /// As [`evaluate`].
-pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
-    keeping(model, recording, start, |series| series)
+pub fn evaluate_from(
+    model: &Model,
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
+    start: Start,
+) -> Result<Evaluation> {
+    all(model, recordings.as_ref(), start, |series| series)
 }
 
 /// As [`evaluate_from`], for the errors alone: no series of the model is kept, so that a long
@@ -105,8 +131,23 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
 ///
 /// # Errors
 /// As [`evaluate`].
-pub fn evaluate_errors(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
-    keeping(model, recording, start, |_| Vec::new())
+pub fn evaluate_errors(
+    model: &Model,
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
+    start: Start,
+) -> Result<Evaluation> {
+    all(model, recordings.as_ref(), start, |_| Vec::new())
+}
+
+fn all(
+    model: &Model,
+    recordings: &[Recording],
+    start: Start,
+    keep: fn(Vec<f64>) -> Vec<f64>,
+) -> Result<Evaluation> {
+    let each = recordings.iter();
+    let parts = each.map(|recording| keeping(model, recording, start, keep));
+    joined::joined(parts.collect::<Result<_>>()?, recordings)
 }
 
 /// The evaluation, with what `keep` keeps of each series of the model.
