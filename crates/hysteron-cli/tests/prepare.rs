@@ -1,5 +1,5 @@
 //! `hysteron prepare` and the preparation before a fit, as a black box.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
@@ -71,10 +71,13 @@ fn a_rough_recording_is_prepared_and_what_was_done_is_said() {
         ),
     );
     let json: Value = serde_json::from_str(&text(&done.stdout)).unwrap();
-    assert_eq!(json["preparation"]["low_pass"]["input"]["cutoff"], 0.2);
-    assert_eq!(json["preparation"]["dead_band"], Value::Null);
-    assert_eq!(json["preparation"]["spikes"], Value::Null);
-    assert_eq!(json["rate_dependent"], false);
+    let [one] = &json["recordings"].as_array().unwrap()[..] else {
+        panic!("{json}");
+    };
+    assert_eq!(one["preparation"]["low_pass"]["input"]["cutoff"], 0.2);
+    assert_eq!(one["preparation"]["dead_band"], Value::Null);
+    assert_eq!(one["preparation"]["spikes"], Value::Null);
+    assert_eq!(one["rate_dependent"], false);
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! Times as people and programs write them: read as they were meant, or refused with the row.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use hysteron::{Columns, Error, Place, Recording, Repair};
 use rand::{RngExt, SeedableRng};
