@@ -3,10 +3,11 @@
 use crate::terminal::{Result, Unclear, print, say};
 use crate::{args, hold_out, progress, recording, remedy, text};
 use hysteron::{
-    Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, RoleDoubt, Roles,
+    Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, Roles,
     TableReader, fit_holding_out, shell_word,
 };
 use serde_json::json;
+use std::collections::BTreeSet;
 use std::error::Error;
 
 pub(crate) fn run(args: &args::Begin) -> Result<()> {
@@ -82,8 +83,10 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
 
 /// Asks for the roles that cannot be told: what may have them, why, and the command to type.
 fn unclear(args: &args::Begin, roles: &Roles) -> Box<dyn Error> {
-    let few = |doubt: &RoleDoubt| doubt.candidates.is_empty();
-    if roles.doubts.iter().any(few) {
+    let candidates = roles.doubts.iter().flat_map(|doubt| &doubt.candidates);
+    let found = roles.input.iter().chain(&roles.output);
+    let all: BTreeSet<&String> = candidates.map(|(name, _)| name).chain(found).collect();
+    if all.len() < 2 {
         let what = "no two columns of this file change: input and output are needed";
         return what.into();
     }

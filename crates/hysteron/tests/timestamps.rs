@@ -189,6 +189,10 @@ fn mixed_formats_are_read_or_their_row_is_named() {
         let moments = moments(&mut rng);
         let (name, format) = all[rng.random_range(0..all.len())];
         let (other, another) = all[rng.random_range(0..all.len())];
+        // A clock that counts from its start may pause for thirty years: a segment begins there.
+        if name.starts_with("seconds") && other.starts_with("epoch") {
+            continue;
+        }
         let at = rng.random_range(1..moments.len());
         let mut cells: Vec<String> = moments.iter().map(format).collect();
         cells[at] = another(&moments[at]);

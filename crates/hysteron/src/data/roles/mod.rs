@@ -302,7 +302,3 @@ fn clock(all: &[Candidate<'_>], is_known: impl Fn(&usize) -> bool) -> Option<usi
     let ranked = ranked.filter_map(|n| Some((rank(&n)?, n)));
     ranked.min().map(|(_, n)| n)
 }
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests;

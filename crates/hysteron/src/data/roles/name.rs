@@ -7,7 +7,7 @@ use crate::recording;
 /// The name of a column in its words, and its unit.
 pub(super) struct Name {
     words: Vec<String>,
-    /// The name as it is written, if it is a single letter, with or without a number.
+    /// The letter that it is or begins with, as it is written.
     letter: Option<String>,
     unit: Option<String>,
 }
@@ -26,10 +26,11 @@ impl Name {
         {
             unit = parts.pop().map(str::to_owned);
         }
-        let letter = match parts[..] {
-            [one] => Some(one.trim_end_matches(char::is_numeric).to_owned()),
-            _ => None,
-        };
+        // `H_A_per_m` begins with one, `a_position` does not.
+        let letter = parts
+            .first()
+            .filter(|first| parts.len() == 1 || first.starts_with(char::is_uppercase));
+        let letter = letter.map(|first| first.trim_end_matches(char::is_numeric).to_owned());
         let letter = letter.filter(|letter| letter.chars().count() == 1);
         Self {
             words: parts.iter().flat_map(|part| apart(part)).collect(),

@@ -25,9 +25,9 @@ const WHOLE: &[(Quantity, &[&str])] = &[
     ),
     (Drive, &["in", "u", "pwm", "cmd"]),
     (Temperature, &["temp", "tc", "thermo"]),
-    (Voltage, &["v", "volt", "volts", "vin"]),
+    (Voltage, &["volt", "volts", "vin"]),
     (Current, &["amp", "amps", "strom"]),
-    (Field, &["h", "feld", "champ", "campo"]),
+    (Field, &["feld", "champ", "campo"]),
     (Pressure, &["druck"]),
     (Response, &["out", "y_out"]),
     (
@@ -36,14 +36,14 @@ const WHOLE: &[(Quantity, &[&str])] = &[
     ),
     (Angle, &["theta", "phi"]),
     (Polarization, &["pol"]),
-    (Flux, &["b", "bl", "m"]),
+    (Flux, &["bl"]),
     (
         Load,
         &[
             "load", "last", "charge", "carga", "gewicht", "weight", "poids", "peso",
         ],
     ),
-    (Force, &["f", "kraft"]),
+    (Force, &["kraft"]),
     (X, &["x"]),
     (Y, &["y"]),
 ];
@@ -250,22 +250,19 @@ const LETTERS: &[(&str, Quantity)] = &[
     ("p", Pressure),
     ("s", Displacement),
     ("s", Time),
+    ("n", Counter),
+    ("i", Counter),
 ];
 
 const SENSORS: [&str; 4] = ["sensor", "capteur", "fühler", "transducer"];
 
-/// What a name may mean: all that its most telling words mean. `letter` is the name as it is
-/// written, if it is a single letter.
+/// What a name may mean: all that its most telling words mean, or else the `letter` that it begins
+/// with, as it is written.
 pub(super) fn may_mean(words: &[String], letter: Option<&str>) -> Vec<Quantity> {
-    let known = LETTERS.iter().filter(|(known, _)| Some(*known) == letter);
-    let known: Vec<Quantity> = known.map(|(_, quantity)| *quantity).collect();
-    if !known.is_empty() {
-        return known;
-    }
     let mut found = Vec::new();
     for (n, word) in words.iter().enumerate() {
         let whole = WHOLE.iter().filter(|(_, known)| {
-            // One or two letters count only at the beginning: `H_A_per_m`, not `Weg in mm`.
+            // One or two letters count only at the beginning: not `Weg in mm`.
             known.contains(&word.as_str()) && (word.chars().count() > 2 || n == 0)
         });
         let part = PART.iter().filter(|(_, known)| {
@@ -274,6 +271,10 @@ pub(super) fn may_mean(words: &[String], letter: Option<&str>) -> Vec<Quantity> 
                 .any(|known| word.starts_with(known) || word.ends_with(known))
         });
         found.extend(whole.chain(part).map(|(quantity, _)| *quantity));
+    }
+    if found.is_empty() {
+        let known = LETTERS.iter().filter(|(known, _)| Some(*known) == letter);
+        found.extend(known.map(|(_, quantity)| *quantity));
     }
     found.sort_unstable();
     found.dedup();
@@ -285,7 +286,7 @@ pub(super) fn may_mean(words: &[String], letter: Option<&str>) -> Vec<Quantity> 
     }
     // What is about another column is nothing else; a counter of samples is no drive.
     for alone in [About, Counter, Time] {
-        if found.contains(&alone) {
+        if found.contains(&alone) && found != [Time, Displacement] {
             return vec![alone];
         }
     }
