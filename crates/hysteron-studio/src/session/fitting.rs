@@ -3,9 +3,10 @@
 use super::fault::Fault;
 use super::id::Id;
 use super::job::{Finished, Job, JobView, Watch, build};
-use super::opened::{Purpose, numbers_of};
+use super::opened::Purpose;
+use super::parts::numbers_of;
 use super::state::{MOST, Running, Session};
-use hysteron::{HoldOut, Recording};
+use hysteron::HoldOut;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -27,12 +27,6 @@ pub enum Purpose {
     Look,
 }
 
-/// Memory of the numbers of a recording.
-pub(super) fn numbers_of(recording: &Recording) -> u64 {
-    let series = 2 + u64::from(recording.time.is_some()) + u64::from(recording.load.is_some());
-    series * (size_of::<f64>() * recording.len()) as u64
-}
-
 /// Columns by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]

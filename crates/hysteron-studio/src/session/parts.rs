@@ -1,7 +1,6 @@
 //! The recordings of a file: several where its clock says so, and how they are shown.
 
 use super::fault::Fault;
-use super::fitting::numbers_of;
 use hysteron::{Recording, Segment, one_after_the_other};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -56,4 +55,10 @@ impl Parts {
         let several = self.several.iter().map(numbers_of);
         several.sum::<u64>() + numbers_of(&self.shown)
     }
+}
+
+/// Memory of the numbers of a recording.
+pub(super) fn numbers_of(recording: &Recording) -> u64 {
+    let series = 2 + u64::from(recording.time.is_some()) + u64::from(recording.load.is_some());
+    series * (size_of::<f64>() * recording.len()) as u64
 }
