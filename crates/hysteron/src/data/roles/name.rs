@@ -1,7 +1,8 @@
 //! What a column may measure, by its name and its unit together.
 
-use super::Quantity::{self, Temperature, Time, Unknown};
-use super::{Series, units, words};
+use super::quantity::Quantity::{self, Temperature, Time, Unknown};
+use super::quantity::Series;
+use super::{units, words};
 use crate::recording;
 
 /// The name of a column in its words, and its unit.

@@ -1,6 +1,6 @@
 //! What units say of a quantity.
 
-use super::Quantity::{self, *};
+use super::quantity::Quantity::{self, *};
 
 /// Units as they are written in brackets, below a name, or at its end. Where the case tells units
 /// apart it counts.

@@ -1,6 +1,6 @@
 //! Words of names, in English, German, French and Spanish.
 
-use super::Quantity::{self, *};
+use super::quantity::Quantity::{self, *};
 
 /// Words that a name has as a whole.
 const WHOLE: &[(Quantity, &[&str])] = &[
