@@ -11,6 +11,7 @@ pub mod scenario;
 pub mod session;
 pub mod stages;
 pub mod table;
+pub mod timestamps;
 
 /// An error says something.
 fn worded(error: &hysteron::Error) {

@@ -540,7 +540,7 @@ class Model:
     ) -> tuple[_Array, _Array]: ...
     def evaluate(
         self,
-        recording: Recording | ArrayLike,
+        recording: _Recordings,
         output: ArrayLike | None = None,
         *,
         start: Literal["fitted", "off", "on", "unknown"] = "fitted",
@@ -827,7 +827,7 @@ class WeightPrior:
 
 def adapt(
     model: Model,
-    recording: Recording | ArrayLike,
+    recording: _Recordings,
     output: ArrayLike | None = None,
     *,
     time: _Times | None = None,
@@ -855,7 +855,7 @@ def adapt(
 def branches(input: ArrayLike, *, dead_band: float | None = None) -> NDArray[int64]: ...
 def compare(
     models: Model | Sequence[Model] | Mapping[str, Model],
-    recording: Recording | ArrayLike,
+    recording: _Recordings,
     output: ArrayLike | None = None,
     *,
     start: Literal["fitted", "off", "on", "unknown"] = "fitted",
@@ -990,6 +990,19 @@ def read(
     max_memory: int | None = None,
 ) -> Recording: ...
 def read_fleet(models: _Path, *, actuators: Sequence[str] | None = None) -> dict[str, Model]: ...
+def read_segments(
+    path: _Path,
+    *,
+    input: str,
+    output: str,
+    time: str | None = None,
+    load: str | None = None,
+    input_name: str | None = None,
+    output_name: str | None = None,
+    load_name: str | None = None,
+    repair: bool = False,
+    max_memory: int | None = None,
+) -> list[Recording]: ...
 def remembered(input: ArrayLike) -> NDArray[int64]: ...
 def scenarios() -> dict[str, str]: ...
 def track(

@@ -921,6 +921,8 @@ class RecordingSummary(_Result):
     ----------
     samples : int
         Number of samples.
+    segments : int
+        Number of recordings: each has a history of its own.
     input : SeriesSummary
         The input.
     output : SeriesSummary
@@ -946,6 +948,7 @@ class RecordingSummary(_Result):
     """
 
     samples: int
+    segments: int
     input: SeriesSummary
     output: SeriesSummary
     time: Sampling | None

@@ -100,3 +100,23 @@ def test_the_path_in_a_message_is_the_path(tmp_path, name):
     with pytest.warns(pyhysteron.HysteronWarning) as warned:
         pyhysteron.read(path, input="T", output="y", repair=True)
     assert str(warned[0].message).startswith(f"{path}: ")
+
+
+def test_segments_are_recordings_of_one_experiment(tmp_path):
+    path = tmp_path / "run.csv"
+    rows = [(n, 50 - 30 * np.cos(0.05 * n)) for n in range(300)]
+    table = "".join(f"{t},{x},{0.2 * x}\n" for t, x in rows + rows[:200])
+    path.write_text("t,x,y\n" + table)
+    columns = {"input": "x", "output": "y", "time": "t"}
+    with pytest.raises(pyhysteron.RecordingError, match="line 302"):
+        pyhysteron.read_segments(path, **columns)
+    with pytest.warns(pyhysteron.HysteronWarning, match="line 302 going back in time"):
+        parts = pyhysteron.read_segments(path, **columns, repair=True)
+    assert [len(part) for part in parts] == [300, 200]
+    model = pyhysteron.fit(parts, levels=6, bootstrap=0, start="off")
+    found = model.evaluate(parts, start="off")
+    apart = [model.evaluate(part, start="off") for part in parts]
+    np.testing.assert_array_equal(found.output_model, np.concatenate([one.output_model for one in apart]))
+    assert found.forward.samples == 500
+    assert pyhysteron.compare(model, parts, start="off")[0].residual.shape == (500,)
+    assert pyhysteron.adapt(model, parts).table["output_model"].shape == (500,)

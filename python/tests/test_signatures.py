@@ -65,6 +65,7 @@ DEFAULTS = {
     pyhysteron.Inverse.run: lambda **shown: MODEL.inverse().run(SERIES / 5, **shown),
     pyhysteron.design: lambda **shown: pyhysteron.design((20, 80), 5, **{**shown, **RATES}).input,
     pyhysteron.read: lambda **shown: pyhysteron.read(FILE, **{**shown, **COLUMNS}),
+    pyhysteron.read_segments: lambda **shown: pyhysteron.read_segments(FILE, **{**shown, **COLUMNS}),
     pyhysteron.control.Controller: lambda **shown: commanded(**{**shown, "model": MODEL}),
     pyhysteron.SpringPlant: lambda **shown: driven(pyhysteron.SpringPlant(**shown)),
     pyhysteron.PreisachPlant: lambda **shown: driven(pyhysteron.PreisachPlant(**shown)),

@@ -35,8 +35,8 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         time: args.time.as_deref(),
         load: None,
     };
-    let recording = recording::read(&args.data, columns, &args.repair)?;
-    let mut adapted = hysteron::adapt(&model, &recording, &args.into(), hysteron::Progress::NONE)?;
+    let recordings = recording::segments(&args.data, columns, &args.repair)?;
+    let mut adapted = hysteron::adapt(&model, &recordings, &args.into(), hysteron::Progress::NONE)?;
     if let Some(adapted) = adapted
         .model
         .fit
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         adapted["from"]["model"] = json!(args.model);
     }
     if let Some(table) = table {
-        adapted.write_table(&recording, table)?;
+        adapted.write_table(&recordings, table)?;
     }
     let faults = faults(args, &adapted);
     let refused = !faults.is_empty() && !args.force.force;

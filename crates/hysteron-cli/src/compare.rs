@@ -3,7 +3,7 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, remedy, text};
-use hysteron::{AtomicFolder, Columns, Forward, Model, Recording};
+use hysteron::{AtomicFolder, Columns, Forward, Model, Recording, one_after_the_other};
 use hysteron_report::{ModelsReport, NamedForward};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// The models' errors on one recording.
 struct Compared<'a> {
     data: &'a Path,
-    recording: Recording,
+    recordings: Vec<Recording>,
     /// One for each model.
     runs: Vec<Forward>,
 }
@@ -52,16 +52,16 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
     };
     let mut compared = Vec::new();
     for data in data {
-        let recording = recording::read(data, columns, &args.repair)?;
+        let recordings = recording::segments(data, columns, &args.repair)?;
         let mut runs = Vec::new();
         for (file, model) in files.iter().zip(&models) {
-            let run = hysteron::forward(model, &recording, args.start.into());
+            let run = hysteron::forward(model, &recordings, args.start.into());
             let named = |error| format!("{}: {}", file.display(), remedy::text_of(&error));
             runs.push(run.map_err(named)?);
         }
         compared.push(Compared {
             data,
-            recording,
+            recordings,
             runs,
         });
     }
@@ -89,9 +89,10 @@ fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> R
             .map(|(name, forward)| NamedForward { name, forward })
             .collect();
         let title = format!("Models on {}", compared.data.display());
+        let shown = one_after_the_other(&compared.recordings).ok_or("there is no recording")?;
         let report = ModelsReport {
             title: &title,
-            recording: &compared.recording,
+            recording: &shown,
             models: &models,
             made: typed.made(),
         };
@@ -134,7 +135,7 @@ fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
         let mut runs: Vec<(&String, &Forward)> = names.iter().zip(&compared.runs).collect();
         runs.sort_by(|a, b| a.1.errors.rmse.total_cmp(&b.1.errors.rmse));
         for (name, run) in runs {
-            let quantity = &compared.recording.output_quantity;
+            let quantity = &compared.recordings[0].output_quantity;
             let mut row = text::errors(name, &run.errors, quantity);
             let seen = match (run.was_fitted, run.seen_for_band) {
                 (true, _) => Some("fitted to this recording"),

@@ -3,9 +3,12 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, recording, text};
-use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording};
+use hysteron::{
+    AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording, one_after_the_other,
+};
 use hysteron_report::Report;
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::path::Path;
 
 pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
@@ -23,19 +26,25 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         time: args.time.as_deref(),
         load: load.as_deref(),
     };
-    let recording = recording::read(&args.data, columns, &args.repair)?;
-    let evaluate = match folder {
-        Some(_) => hysteron::evaluate_from,
-        None => hysteron::evaluate_errors,
+    let recordings = recording::segments(&args.data, columns, &args.repair)?;
+    let start = args.start.into();
+    let evaluation = match folder {
+        Some(_) => hysteron::evaluate_from(&model, &recordings, start)?,
+        None => hysteron::evaluate_errors(&model, &recordings, start)?,
     };
-    let evaluation = evaluate(&model, &recording, args.start.into())?;
     if let Some(mut folder) = folder {
+        let behind = recordings
+            .iter()
+            .map(|recording| model.behind_body(recording));
+        let behind = behind.map(|recording| recording.map(Cow::into_owned));
+        let behind: Vec<Recording> = behind.collect::<hysteron::Result<_>>()?;
+        let shown = one_after_the_other(&behind).ok_or("there is no recording")?;
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let typed = Typed::now()?;
         let report = Report {
             title: &title,
             model: &model,
-            recording: &*model.behind_body(&recording)?,
+            recording: &shown,
             evaluation: &evaluation,
             made: typed.made(),
         };
@@ -45,11 +54,12 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     }
     if args.json.json {
         let mut object = to_json(&evaluation);
+        object["segments"] = json!(recordings.len());
         object["was_fitted"] = json!(evaluation.was_fitted);
         object["seen_for_band"] = json!(evaluation.seen_for_band);
         return print(&object.to_string());
     }
-    let mut result = to_text(&evaluation, &recording);
+    let mut result = to_text(&evaluation, &recordings);
     if evaluation.was_fitted {
         result += "\nthis is a recording that the model was fitted to: the errors say how well it \
                    fits, not how well it predicts";
@@ -91,8 +101,11 @@ pub(crate) fn to_json(evaluation: &Evaluation) -> Value {
     object
 }
 
-fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
-    let (input, output) = (&recording.input_quantity, &recording.output_quantity);
+fn to_text(evaluation: &Evaluation, recordings: &[Recording]) -> String {
+    let (input, output) = (
+        &recordings[0].input_quantity,
+        &recordings[0].output_quantity,
+    );
     let mut rows = vec![text::row(["", "RMSE", "largest", "% of range", "samples"])];
     let mut line = |name: &str, errors: Option<&Errors>, quantity: &Quantity| {
         if let Some(errors) = errors {
@@ -115,12 +128,17 @@ fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
         );
     }
     if let Some(samples) = evaluation.estimated_from {
-        result += &format!("\nthe start was estimated from the first {samples} samples");
+        let of = if recordings.len() > 1 {
+            " of the recordings"
+        } else {
+            ""
+        };
+        result += &format!("\nthe start was estimated from the first {samples} samples{of}");
     }
     if let Err(reason) = &evaluation.inverse {
         result += &format!("\nno inverse: {reason}");
     }
-    let samples = recording.len();
+    let samples = evaluation.forward.samples;
     match evaluation.clipped {
         0 => result,
         // These errors are about inputs that the model does not know.

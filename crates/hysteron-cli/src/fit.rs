@@ -28,15 +28,20 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for data in &args.data {
-        for recording in recording::segments(data, columns, &args.how.repair)? {
-            let (recording, preparation, rate) = prepared(args, recording)?;
+        for (recording, preparation, rate) in read(args, data, columns)? {
             recordings.push(recording);
             reports.push((preparation, rate));
         }
     }
-    let read = |file: &Path| Ok(read(args, file, columns)?.0);
-    let repeats = args.repeat.iter().map(|file| read(file));
-    let repeats = repeats.collect::<Result<_>>()?;
+    let read = |file: &Path| {
+        let read = read(args, file, columns)?.into_iter();
+        Ok(read.map(|(recording, ..)| recording).collect())
+    };
+    let mut repeats = Vec::new();
+    for file in &args.repeat {
+        let more: Vec<Recording> = read(file)?;
+        repeats.extend(more);
+    }
     let what = hold_out::what(args, read)?;
     let (model, held_out) = identify(args, &recordings, repeats, what.as_ref())?;
     file.commit_with(model.to_json().as_bytes())?;
@@ -67,22 +72,26 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     }
 }
 
-/// A recording with the units asked for, and prepared.
-fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Prepared> {
-    prepared(args, recording::read(data, columns, &args.how.repair)?)
-}
-
-fn prepared(args: &args::Fit, mut recording: Recording) -> Result<Prepared> {
-    let units = [
-        (&args.how.input_unit, &mut recording.input_quantity),
-        (&args.how.output_unit, &mut recording.output_quantity),
-    ];
-    for (unit, quantity) in units {
-        if unit.is_some() {
-            quantity.unit.clone_from(unit);
-        }
-    }
-    prepare::before_fit(recording, &args.how.prepare)
+/// The recordings of a file with the units asked for, and prepared.
+fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Vec<Prepared>> {
+    let recordings = recording::segments(data, columns, &args.how.repair)?;
+    let count = recordings.len();
+    let each = recordings
+        .into_iter()
+        .enumerate()
+        .map(|(n, mut recording)| {
+            let units = [
+                (&args.how.input_unit, &mut recording.input_quantity),
+                (&args.how.output_unit, &mut recording.output_quantity),
+            ];
+            for (unit, quantity) in units {
+                if unit.is_some() {
+                    quantity.unit.clone_from(unit);
+                }
+            }
+            prepare::before_fit(recording, &args.how.prepare, &recording::which(n, count))
+        });
+    each.collect()
 }
 
 fn identify(

@@ -8,12 +8,12 @@ use std::path::Path;
 /// What the options hold out; `read` reads a file as the recordings fitted are read.
 pub(crate) fn what(
     args: &args::Fit,
-    read: impl Fn(&Path) -> Result<Recording>,
+    read: impl Fn(&Path) -> Result<Vec<Recording>>,
 ) -> Result<Option<HoldOut>> {
     let mut files = Vec::new();
     for what in &args.how.hold_out {
         match what {
-            args::HoldOut::File(file) => files.push(read(file)?),
+            args::HoldOut::File(file) => files.extend(read(file)?),
             args::HoldOut::Part(part) if args.how.hold_out.len() == 1 => {
                 return Ok(Some(part.clone()));
             }

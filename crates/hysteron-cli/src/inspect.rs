@@ -56,12 +56,12 @@ fn summary(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
         time: args.time.as_deref(),
         load: None,
     };
-    let recording = recording::read(&args.file, columns, &args.repair)?;
+    let recordings = recording::segments(&args.file, columns, &args.repair)?;
     let plane = match args.range {
         Some((min, max)) => Plane::new(min, max, args.levels)?,
-        None => hysteron::plane_of(&recording, args.levels)?,
+        None => hysteron::plane_of(&recordings, args.levels)?,
     };
-    let summary = hysteron::inspect_recording(&recording, plane)?;
+    let summary = hysteron::inspect_recording(&recordings, plane)?;
     if args.json.json {
         return print(&json!(summary).to_string());
     }
@@ -111,9 +111,13 @@ fn recording_text(summary: &RecordingSummary) -> String {
         _ => String::new(),
     };
     format!(
-        "{} samples\n{}\n{time}plane of {} levels from {} to {}: {} of {} operators excited\
+        "{} samples{}\n{}\n{time}plane of {} levels from {} to {}: {} of {} operators excited\
          {determined}",
         summary.samples,
+        match summary.segments {
+            1 => String::new(),
+            count => format!(" in {count} recordings"),
+        },
         text::table(&rows),
         summary.levels,
         text::number(summary.plane.0),

@@ -71,7 +71,10 @@ fn main() -> ExitCode {
         Err(error) => {
             let what = remedy::text_of(error.as_ref());
             fail(format_args!("{what}{}", advice(error.as_ref())));
-            ExitCode::FAILURE
+            match error.is::<terminal::Unclear>() {
+                true => ExitCode::from(2),
+                false => ExitCode::FAILURE,
+            }
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, Judged, LowPass, Preparation, PrepareOptions, Quantity, RateDependence, Recording,
-    Repairs, SensorLag, Smoothed, Step, TableWriter,
+    Columns, Judged, LowPass, Preparation, PrepareOptions, Progress, Quantity, RateDependence,
+    Recording, Repairs, SensorLag, Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
@@ -15,11 +15,15 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
         time: args.time.as_deref(),
         ..Columns::new(&args.input, &args.output)
     };
-    let (recording, others) = recording::read_with_others(&args.data, columns, &args.repair)?;
+    let (recordings, others) = recording::segments_with_others(&args.data, columns, &args.repair)?;
     let options = options(&args.steps, args.sensor_lag, PrepareOptions::default());
-    let (prepared, report) = hysteron::prepare(&recording, &options, hysteron::Progress::NONE)?;
-    let rate = hysteron::rate_dependence(&prepared)?;
-    let left_out = others.write_to(&prepared, recording.time.as_deref(), table)?;
+    let (mut prepared, mut reports) = (Vec::new(), Vec::new());
+    for recording in &recordings {
+        let (recording, report) = hysteron::prepare(recording, &options, Progress::NONE)?;
+        reports.push((report, hysteron::rate_dependence(&recording)?));
+        prepared.push(recording);
+    }
+    let left_out = others.write_to(&prepared, &recordings, table)?;
     if !left_out.is_empty() {
         let names = left_out.join(", ");
         say(format_args!(
@@ -27,42 +31,47 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
         ));
     }
     if args.json.json {
-        let object = json!({
-            "table": args.out,
-            "preparation": report,
-            "rate": rate,
-            "rate_dependent": is_material(&rate),
+        let each = reports.iter().map(|(report, rate)| {
+            json!({
+                "preparation": report,
+                "rate": rate,
+                "rate_dependent": is_material(rate),
+            })
         });
+        let object = json!({"table": args.out, "recordings": each.collect::<Vec<_>>()});
         return print(&object.to_string());
     }
-    let mut lines = lines(&report, &recording);
-    lines.insert(
-        0,
-        format!(
-            "{}: {} samples of {}",
-            args.out.display(),
-            report.samples,
-            report.samples_before
-        ),
-    );
-    lines.extend(rate.as_ref().map(rate_line));
-    print(&lines.join("\n"))
+    let count = |of: fn(&Preparation) -> usize| -> usize {
+        reports.iter().map(|(report, _)| of(report)).sum()
+    };
+    let mut said = vec![format!(
+        "{}: {} samples of {}",
+        args.out.display(),
+        count(|report| report.samples),
+        count(|report| report.samples_before)
+    )];
+    for (n, ((report, rate), recording)) in reports.iter().zip(&recordings).enumerate() {
+        let lines = lines(report, recording).into_iter();
+        let lines = lines.chain(rate.as_ref().map(rate_line));
+        said.extend(lines.map(|line| recording::which(n, recordings.len()) + &line));
+    }
+    print(&said.join("\n"))
 }
 
 /// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to
-/// standard error; it is returned for the JSON.
+/// standard error, behind `which` recording it is; it is returned for the JSON.
 pub(crate) fn before_fit(
     recording: Recording,
     args: &args::PrepareBeforeFit,
+    which: &str,
 ) -> Result<(Recording, Option<Preparation>, Option<RateDependence>)> {
     let options = steps_of(args);
     let (recording, report) = match options == PrepareOptions::all(Step::Off) {
         true => (recording, None),
         false => {
-            let (prepared, report) =
-                hysteron::prepare(&recording, &options, hysteron::Progress::NONE)?;
+            let (prepared, report) = hysteron::prepare(&recording, &options, Progress::NONE)?;
             for line in lines(&report, &recording) {
-                say(format_args!("{line}"));
+                say(format_args!("{which}{line}"));
             }
             (prepared, Some(report))
         }
@@ -70,12 +79,15 @@ pub(crate) fn before_fit(
     if report.is_none() {
         // With the preparation they are refused.
         for doubt in hysteron::doubts(&recording)? {
-            say(format_args!("{}", crate::remedy::text_of_doubt(&doubt)));
+            say(format_args!(
+                "{which}{}",
+                crate::remedy::text_of_doubt(&doubt)
+            ));
         }
     }
     let rate = hysteron::rate_dependence(&recording)?;
     if let Some(rate) = rate.as_ref().filter(|rate| rate.is_material()) {
-        say(format_args!("{}", rate_line(rate)));
+        say(format_args!("{which}{}", rate_line(rate)));
     }
     Ok((recording, report, rate))
 }

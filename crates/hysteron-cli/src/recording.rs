@@ -2,24 +2,36 @@
 
 use crate::args;
 use crate::terminal::{Result, say};
-use hysteron::{Columns, Note, Others, Recording, TableReader};
+use hysteron::{Columns, Note, Others, Recording, Segment, TableReader};
 use std::path::Path;
 
-/// Reads a recording; notes go to standard error.
-pub(crate) fn read(path: &Path, columns: Columns<'_>, repair: &args::Repair) -> Result<Recording> {
-    let (recording, notes) = Recording::read(path, columns, repair)?;
-    tell(path, &notes);
-    Ok(recording)
-}
-
-/// As [`read`], for a table that may hold several recordings of one experiment.
+/// Reads a table: one recording, or several of one experiment. Notes go to standard error.
 pub(crate) fn segments(
     path: &Path,
     columns: Columns<'_>,
     repair: &args::Repair,
 ) -> Result<Vec<Recording>> {
     let (segments, notes) = Recording::read_segments(path, columns, repair)?;
-    tell(path, &notes);
+    tell(path, &notes, &segments);
+    Ok(segments.into_iter().map(|part| part.recording).collect())
+}
+
+/// As [`segments`], with the other columns of the file.
+pub(crate) fn segments_with_others(
+    path: &Path,
+    columns: Columns<'_>,
+    repair: &args::Repair,
+) -> Result<(Vec<Recording>, Others)> {
+    let (segments, others, notes) = Recording::read_with_others(path, columns, repair)?;
+    tell(path, &notes, &segments);
+    let recordings = segments.into_iter().map(|part| part.recording).collect();
+    Ok((recordings, others))
+}
+
+fn tell(path: &Path, notes: &[Note], segments: &[Segment]) {
+    for note in notes {
+        say(format_args!("{}: {note}", path.display()));
+    }
     if segments.len() > 1 {
         let rows = segments
             .iter()
@@ -31,23 +43,13 @@ pub(crate) fn segments(
             rows.collect::<Vec<_>>().join(", ")
         ));
     }
-    Ok(segments.into_iter().map(|part| part.recording).collect())
 }
 
-/// As [`read`], with the other columns of the file.
-pub(crate) fn read_with_others(
-    path: &Path,
-    columns: Columns<'_>,
-    repair: &args::Repair,
-) -> Result<(Recording, Others)> {
-    let (recording, others, notes) = Recording::read_with_others(path, columns, repair)?;
-    tell(path, &notes);
-    Ok((recording, others))
-}
-
-fn tell(path: &Path, notes: &[Note]) {
-    for note in notes {
-        say(format_args!("{}: {note}", path.display()));
+/// Before what is said of one recording of several.
+pub(crate) fn which(n: usize, count: usize) -> String {
+    match count {
+        1 => String::new(),
+        _ => format!("recording {}: ", n + 1),
     }
 }
 

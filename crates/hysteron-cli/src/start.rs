@@ -1,77 +1,140 @@
 //! `hysteron start`: what is in a file, a first fit, and the commands to go on with.
 
-use crate::terminal::{Result, print, say};
+use crate::terminal::{Result, Unclear, print, say};
 use crate::{args, hold_out, progress, recording, remedy, text};
 use hysteron::{
     Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, Roles,
     TableReader, fit_holding_out, shell_word,
 };
 use serde_json::json;
+use std::collections::BTreeSet;
+use std::error::Error;
 
 pub(crate) fn run(args: &args::Begin) -> Result<()> {
+    let inputs = [args.file.as_path()];
+    let file = args.out.as_ref().map(|out| {
+        let target = args.force.target(out, &inputs);
+        Model::file(target)
+    });
+    let file = file.transpose()?;
     let mut table = TableReader::open_with(&args.file, args.repair.max_memory())?;
-    let preview = hysteron::preview_table(&mut table)?;
+    let given = [&args.input, &args.output, &args.time, &args.load];
+    let mut known = [None; 4];
+    for (place, name) in known.iter_mut().zip(given) {
+        if let Some(name) = name {
+            *place = Some(table.column(name)?);
+        }
+    }
+    let preview = hysteron::preview_table_knowing(&mut table, known)?;
     drop(table);
-    let roles = Roles {
-        input: args.input.clone().or(preview.roles.input.clone()),
-        output: args.output.clone().or(preview.roles.output.clone()),
-        ..preview.roles.clone()
-    };
+    let roles = &preview.roles;
     let (Some(input), Some(output)) = (&roles.input, &roles.output) else {
-        let what = "no two columns of this file change: input and output are needed";
-        return Err(what.into());
+        return Err(unclear(args, roles));
     };
     if !args.json.json {
-        let names = preview
-            .table
-            .columns
-            .iter()
-            .map(|column| column.name.as_str());
-        let names = names.collect::<Vec<_>>().join(", ");
-        let rows = preview.table.rows;
+        let columns = preview.table.columns.iter();
+        let names: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
+        let (rows, names) = (preview.table.rows, names.join(", "));
         print(&format!("{}: {rows} rows of {names}", args.file.display()))?;
         print(&roles.reasons.join("\n"))?;
     }
-    // A column that was named is not guessed to be another one too.
-    let guessed = |column: &Option<String>| {
-        let column = column.clone();
-        column.filter(|name| name != input && name != output)
-    };
-    let (time, load) = (guessed(&roles.time), guessed(&roles.load));
     let columns = Columns {
-        time: time.as_deref(),
-        load: load.as_deref(),
+        time: roles.time.as_deref(),
+        load: roles.load.as_deref(),
         ..Columns::new(input, output)
     };
-    let recording = recording::read(&args.file, columns, &args.repair)?;
-    let plane = hysteron::plane_of(&recording, 20)?;
-    let summary = hysteron::inspect_recording(&recording, plane)?;
-    let (model, held_out) = fit(&recording)?;
-    let mut advice = hysteron::advice(&model, std::slice::from_ref(&recording))?;
+    let recordings = recording::segments(&args.file, columns, &args.repair)?;
+    let plane = hysteron::plane_of(&recordings, 20)?;
+    let summary = hysteron::inspect_recording(&recordings, plane)?;
+    let (model, held_out) = fit(&recordings)?;
+    let mut advice = hysteron::advice(&model, &recordings)?;
     advice.extend(held_out.iter().flat_map(HeldOut::advice));
     let commands = commands(args, columns, held_out.is_some());
+    if let Some(file) = file {
+        file.commit_with(model.to_json().as_bytes())?;
+    }
     if args.json.json {
         let object = json!({
             "table": preview.table,
-            "roles": {"input": input, "output": output, "time": time, "load": load},
+            "roles": {
+                "input": input,
+                "output": output,
+                "time": roles.time,
+                "load": roles.load,
+            },
             "reasons": roles.reasons,
             "recording": summary,
             "fit": model.fit,
             "hold_out": held_out,
             "advice": advice.iter().map(remedy::text_of_advice).collect::<Vec<_>>(),
             "commands": commands,
+            "model": args.out,
         });
         return print(&object.to_string());
     }
-    print(&to_text(&summary, &model, held_out.as_ref()))?;
+    let written = args.out.as_ref().map(|out| format!("\n{}", out.display()));
+    let text = to_text(&summary, &model, held_out.as_ref());
+    print(&(text + &written.unwrap_or_default()))?;
     for advice in &advice {
         say(format_args!("{}", remedy::text_of_advice(advice)));
     }
     print(&format!("\nGo on with:\n{}", commands.join("\n")))
 }
 
+/// Asks for the roles that cannot be told: what may have them, why, and the command to type.
+fn unclear(args: &args::Begin, roles: &Roles) -> Box<dyn Error> {
+    let candidates = roles.doubts.iter().flat_map(|doubt| &doubt.candidates);
+    let found = roles.input.iter().chain(&roles.output);
+    let all: BTreeSet<&String> = candidates.map(|(name, _)| name).chain(found).collect();
+    if all.len() < 2 {
+        let what = "no two columns of this file change: input and output are needed";
+        return what.into();
+    }
+    let asked = roles.doubts.iter().map(|doubt| {
+        let each = doubt.candidates.iter();
+        let each = each.map(|(name, why)| format!("\n  `{name}`, {why}"));
+        format!(
+            "which column is the {}?{}",
+            doubt.role,
+            each.collect::<String>()
+        )
+    });
+    let asked = asked.collect::<Vec<_>>().join("\n");
+    // The first candidates, of which none is taken twice.
+    let mut taken: Vec<&str> = roles
+        .input
+        .iter()
+        .chain(&roles.output)
+        .map(String::as_str)
+        .collect();
+    let mut named = String::new();
+    for (role, found) in [
+        ("input", &roles.input),
+        ("output", &roles.output),
+        ("time", &roles.time),
+        ("load", &args.load),
+    ] {
+        let doubt = roles.doubts.iter().find(|doubt| doubt.role == role);
+        let names = doubt.into_iter().flat_map(|doubt| &doubt.candidates);
+        let mut names = names.map(|(name, _)| name.as_str());
+        let name = found
+            .as_deref()
+            .or_else(|| names.find(|name| !taken.contains(name)));
+        if let Some(name) = name {
+            taken.push(name);
+            named += &format!(" --{role} {}", shell_word(name));
+        }
+    }
+    let file = shell_word(&args.file.display().to_string());
+    Box::new(Unclear(format!(
+        "{}: the columns do not tell their roles. {asked}\nname them, such as\n  hysteron start \
+         {file}{named}",
+        args.file.display()
+    )))
+}
+
 /// A fit that is tested on a fifth of the branches, where there are enough of them.
-fn fit(recording: &Recording) -> Result<(Model, Option<HeldOut>)> {
+fn fit(recordings: &[Recording]) -> Result<(Model, Option<HeldOut>)> {
     let bar = progress::stages();
     let told = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
@@ -79,12 +142,15 @@ fn fit(recording: &Recording) -> Result<(Model, Option<HeldOut>)> {
     };
     let fit = Fit::new().progress(Progress::new(&told));
     let fifth = HoldOut::Branches(0.2);
-    let found = match recording.split(&fifth) {
-        Ok(_) => {
-            let (model, held_out) = fit_holding_out(&fit, recording, &fifth)?;
+    let found = match recordings
+        .iter()
+        .all(|recording| recording.split(&fifth).is_ok())
+    {
+        true => {
+            let (model, held_out) = fit_holding_out(&fit, recordings, &fifth)?;
             (model, Some(held_out))
         }
-        Err(_) => (fit.run(recording)?, None),
+        false => (fit.run(recordings)?, None),
     };
     bar.finish_and_clear();
     Ok(found)
@@ -122,6 +188,9 @@ fn commands(args: &args::Begin, columns: Columns<'_>, held_out: bool) -> Vec<Str
         if let Some(column) = column {
             named += &format!(" --{name} {}", shell_word(column));
         }
+    }
+    if args.repair.is_asked() {
+        named += " --repair";
     }
     let held_out = if held_out {
         " --hold-out branches:20%"

@@ -23,7 +23,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         [&args.data, &args.model],
         args.out.as_deref(),
         &args.force,
-        (args.json.json, args.memory.limit()),
+        (args.json.json, args.repair.max_memory()),
         what,
         |table, out, progress| {
             let what = hysteron::Simulate {
@@ -31,6 +31,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
                 around: Around {
                     time: args.time.as_deref(),
                     load: load.as_deref(),
+                    repair: args.repair.what(),
                 },
                 band: band.as_ref(),
             };
@@ -54,6 +55,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         around: Around {
             time: args.time.as_deref(),
             load: load.as_deref(),
+            repair: args.repair.what(),
         },
         drive_range: args.drive_range,
         horizon: args.horizon,
@@ -65,7 +67,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         [&args.data, &args.model],
         args.out.as_deref(),
         &args.force,
-        (args.json.json, args.memory.limit()),
+        (args.json.json, args.repair.max_memory()),
         what,
         |table, out, progress| {
             let counts = hysteron::invert_table(&model, state, table, how, out, progress)?;
@@ -119,6 +121,12 @@ fn through(
             say(format_args!("{count} of {} {what}", counts.samples));
         }
     }
+    if counts.anew > 0 {
+        say(format_args!(
+            "{} recordings of one experiment: the clock goes back, and the model begins anew",
+            counts.anew + 1
+        ));
+    }
     if counts.passed > 0 {
         say(format_args!(
             "{} of {} targets lie inside a jump of the relay model: the output passes them",
@@ -139,6 +147,7 @@ fn through(
             "passed": counts.passed,
             "limited": counts.limited,
             "half_width": counts.half_width,
+            "anew": counts.anew,
             "table": out,
         });
         print(&object.to_string())?;

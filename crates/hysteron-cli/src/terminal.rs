@@ -6,6 +6,18 @@ use std::io::Write;
 /// What a command comes to.
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
+/// What the command needs to be told, as text: wrong usage, found when a file was read.
+#[derive(Debug)]
+pub(crate) struct Unclear(pub(crate) String);
+
+impl std::fmt::Display for Unclear {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Error for Unclear {}
+
 /// Tells a person something, on standard error.
 pub(crate) fn say(message: std::fmt::Arguments<'_>) {
     eprintln!("hysteron: {}", hysteron::printable(&message.to_string()));

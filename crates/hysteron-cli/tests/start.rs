@@ -88,3 +88,64 @@ fn a_file_without_two_columns_that_change_is_refused() {
     let text = String::from_utf8(done.get_output().stderr.clone()).unwrap();
     assert!(text.contains("input and output are needed"), "{text}");
 }
+
+#[test]
+fn start_asks_for_roles_that_cannot_be_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = table().replace("temperature [degC];lift [mm]", "channel 1;channel 2");
+    std::fs::write(folder.path().join("run.csv"), &table).unwrap();
+    let done = hysteron(&folder)
+        .args(["start", "run.csv", "-o", "first.json"])
+        .assert()
+        .code(2);
+    let said = String::from_utf8(done.get_output().stderr.clone()).unwrap();
+    assert!(done.get_output().stdout.is_empty());
+    assert!(!folder.path().join("first.json").exists());
+    for part in ["which column is the input?", "`channel 1`", "`channel 2`"] {
+        assert!(said.contains(part), "{part} in {said}");
+    }
+    // The command that is named runs.
+    let command = said.lines().last().unwrap().trim();
+    let words = "hysteron start run.csv --input 'channel 1' --output 'channel 2' --time 'time [s]'";
+    assert_eq!(command, words);
+    let named = [
+        "--input",
+        "channel 1",
+        "--output",
+        "channel 2",
+        "--time",
+        "time [s]",
+    ];
+    hysteron(&folder)
+        .args(["start", "run.csv", "-o", "first.json"])
+        .args(named)
+        .assert()
+        .success();
+    let model = std::fs::read_to_string(folder.path().join("first.json")).unwrap();
+    assert!(model.contains("hysteron-model"));
+}
+
+/// A German logger: its time is no output.
+#[test]
+fn a_time_is_never_the_output() {
+    let folder = tempfile::tempdir().unwrap();
+    for header in [
+        "Zeit;Temperatur;Weg",
+        "X_Value;T;foo",
+        "Messung;U [V];s [mm]",
+    ] {
+        let table = table();
+        let (_, rows) = table.split_once('\n').unwrap();
+        std::fs::write(folder.path().join("run.csv"), format!("{header}\n{rows}")).unwrap();
+        let done = hysteron(&folder)
+            .args(["start", "run.csv", "--json"])
+            .assert()
+            .success();
+        let found: Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+        let [_, input, output] = header.split(';').collect::<Vec<_>>()[..] else {
+            unreachable!();
+        };
+        assert_eq!(found["roles"]["input"], input, "{header}");
+        assert_eq!(found["roles"]["output"], output, "{header}");
+    }
+}

@@ -3,7 +3,7 @@
 use crate::choices::{learner, named, no_argument, start_of};
 use crate::convert::{result, to_python};
 use crate::error::Raise;
-use crate::inputs::recording_of;
+use crate::inputs::recordings_of;
 use crate::integer::Integer;
 use crate::learning::outcomes;
 use crate::model::Model;
@@ -65,8 +65,9 @@ impl Adapted {
 /// Parameters
 /// ----------
 /// model : Model
-/// recording : Recording or array_like, shape (n,)
-///     In the model's units; of arrays, the input.
+/// recording : Recording, list of Recording, or array_like of shape (n,)
+///     In the model's units; of arrays, the input. A list is one experiment: the operators start
+///     anew in each recording, and what was learned goes on.
 /// output : array_like, shape (n,), optional
 ///     Where `recording` is the input.
 /// time : array_like, shape (n,), optional
@@ -127,15 +128,18 @@ pub(crate) fn adapt<'py>(
 ) -> PyResult<Adapted> {
     let names = ["time", "progress"];
     let options = adapt_options(("adapt", &names), method, start, options)?;
-    let recording = recording_of(recording, output, time, None)?.inner;
+    let recordings = recordings_of(recording, output, time, None)?;
     let model = &model.inner;
     let adapted = with_progress(py, progress, |progress| {
-        hysteron::adapt(model, &recording, &options, progress)
+        hysteron::adapt(model, &recordings, &options, progress)
     })?;
-    let errors = PyArray1::from_vec(py, adapted.errors(&recording));
+    let errors = PyArray1::from_vec(py, adapted.errors(&recordings));
     let table = PyDict::new(py);
-    table.set_item("input", PyArray1::from_vec(py, recording.input.clone()))?;
-    table.set_item("output", PyArray1::from_vec(py, recording.output.clone()))?;
+    let each = recordings.as_ref().iter();
+    let input = each.clone().flat_map(|r| r.input.iter().copied());
+    table.set_item("input", PyArray1::from_iter(py, input))?;
+    let output = each.flat_map(|r| r.output.iter().copied());
+    table.set_item("output", PyArray1::from_iter(py, output))?;
     table.set_item("error", errors)?;
     table.set_item("outcome", outcomes(py, adapted.outcomes.iter().copied())?)?;
     let comparison = PyDict::new(py);

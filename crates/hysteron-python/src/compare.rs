@@ -3,7 +3,7 @@
 use crate::choices::{STARTS, another_kind, choice};
 use crate::convert::{result, to_python};
 use crate::error::Raise;
-use crate::inputs::recording_of;
+use crate::inputs::recordings_of;
 use crate::model::Model;
 use crate::pool::detached;
 use numpy::PyArray1;
@@ -17,8 +17,9 @@ use pyo3::types::{PyDict, PyList};
 /// models : Model, list of Model, or dict of Model
 ///     The keys of a dictionary are the names of the models. Those of a list are ``'model 1'``,
 ///     ``'model 2'`` and so on.
-/// recording : Recording, or array_like of shape (n,)
-///     An array is the input, and `output` is needed.
+/// recording : Recording, list of Recording, or array_like of shape (n,)
+///     A list is one experiment: the models start anew in each recording. An array is the input, and
+///     `output` is needed.
 /// output : array_like, shape (n,), optional
 /// start : {'fitted', 'off', 'on', 'unknown'}
 ///     Where the models start, as for `Model.evaluate`.
@@ -57,12 +58,13 @@ pub(crate) fn compare<'py>(
     load: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyList>> {
     let start = choice("start", start, &STARTS)?;
-    let recording = recording_of(recording, output, time, load)?;
+    let recordings = recordings_of(recording, output, time, load)?;
     let found = PyList::empty(py);
     for (name, model) in models_of(models)? {
-        let (model, recording) = (model.get(), &recording.inner);
-        let run = detached(py, || hysteron::forward(&model.inner, recording, start)).raise()?;
-        let residual = recording.output.iter().zip(&run.output_model);
+        let model = model.get();
+        let run = detached(py, || hysteron::forward(&model.inner, &recordings, start)).raise()?;
+        let measured = recordings.as_ref().iter().flat_map(|r| &r.output);
+        let residual = measured.zip(&run.output_model);
         let residual = residual.map(|(measured, modelled)| measured - modelled);
         let dict = PyDict::new(py);
         dict.set_item("name", name)?;

@@ -2,11 +2,10 @@
 
 use crate::convert::{result, to_python};
 use crate::error::Raise;
-use crate::inputs::{inputs_of, inputs_seen};
+use crate::inputs::{Recordings, inputs_of, inputs_seen};
 use crate::integer::Integer;
 use crate::plane::on_plane;
 use crate::pool::detached;
-use crate::recording::Recording;
 use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start, Surroundings};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -124,13 +123,10 @@ fn excited<'py>(
 pub(crate) fn evaluate<'py>(
     py: Python<'py>,
     model: &Model,
-    recording: &Recording,
+    recordings: &Recordings,
     start: Start,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let found = detached(py, || {
-        hysteron::evaluate_from(model, &recording.inner, start)
-    })
-    .raise()?;
+    let found = detached(py, || hysteron::evaluate_from(model, recordings, start)).raise()?;
     let dict = PyDict::new(py);
     dict.set_item("forward", to_python(py, &found.forward)?)?;
     dict.set_item("clipped", found.clipped)?;

@@ -163,7 +163,7 @@ pub(crate) fn fit(
                 (model, Some(held_out))
             }
         };
-        let mut advice = hysteron::advice(&model, &recordings)?;
+        let mut advice = hysteron::advice(&model, recordings.as_ref())?;
         advice.extend(held_out.iter().flat_map(HeldOut::advice));
         Ok((model, advice))
     })?;
@@ -223,9 +223,9 @@ pub(crate) fn left_out<'py>(
     let recordings = recordings_of(recording, output, time, load)?;
     let found = with_progress(py, progress, |progress| {
         if auto.start {
-            options.start = hysteron::usual_start(&recordings, &options)?;
+            options.start = hysteron::usual_start(recordings.as_ref(), &options)?;
         }
-        hysteron::left_out(&recordings, &options, candidates.as_ref(), progress)
+        hysteron::left_out(recordings.as_ref(), &options, candidates.as_ref(), progress)
     })?;
     let dict = PyDict::new(py);
     dict.set_item("predicted", PyArray1::from_slice(py, &found.predicted))?;

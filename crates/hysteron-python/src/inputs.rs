@@ -31,13 +31,28 @@ pub(crate) fn recording_of(
     }
 }
 
+/// One recording, or several of one experiment.
+pub(crate) enum Recordings {
+    One(Arc<hysteron::Recording>),
+    Several(Vec<hysteron::Recording>),
+}
+
+impl AsRef<[hysteron::Recording]> for Recordings {
+    fn as_ref(&self) -> &[hysteron::Recording] {
+        match self {
+            Self::One(recording) => std::slice::from_ref(recording),
+            Self::Several(recordings) => recordings,
+        }
+    }
+}
+
 /// One recording, as [`recording_of`], or a list of them.
 pub(crate) fn recordings_of(
     value: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<hysteron::Recording>> {
+) -> PyResult<Recordings> {
     if output.is_none()
         && let Ok(several) = value.extract::<Vec<Recording>>()
     {
@@ -46,10 +61,11 @@ pub(crate) fn recordings_of(
                 "recordings have their own time and load: leave these out",
             ));
         }
-        return Ok(several.iter().map(|r| (*r.inner).clone()).collect());
+        let several = several.iter().map(|r| (*r.inner).clone());
+        return Ok(Recordings::Several(several.collect()));
     }
     let recording = recording_of(value, output, time, load)?;
-    Ok(vec![Arc::unwrap_or_clone(recording.inner)])
+    Ok(Recordings::One(recording.inner))
 }
 
 /// One recording or a list of them; arrays are not taken.

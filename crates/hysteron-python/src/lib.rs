@@ -89,7 +89,7 @@ mod _hysteron {
     #[pymodule_export]
     use crate::prior::WeightPrior;
     #[pymodule_export]
-    use crate::read::read;
+    use crate::read::{read, read_segments};
     #[pymodule_export]
     use crate::recording::Recording;
     #[pymodule_export]

@@ -296,9 +296,9 @@ impl Recording {
         let levels = levels.map_or(Ok(FitOptions::default().levels), |n| n.of("levels"))?;
         let plane = match range {
             Some((min, max)) => Plane::new(min, max, levels).raise()?,
-            None => hysteron::plane_of(&self.inner, levels).raise()?,
+            None => hysteron::plane_of(&*self.inner, levels).raise()?,
         };
-        let summary = detached(py, || hysteron::inspect_recording(&self.inner, plane)).raise()?;
+        let summary = detached(py, || hysteron::inspect_recording(&*self.inner, plane)).raise()?;
         result_of(py, "RecordingSummary", &summary)
     }
 

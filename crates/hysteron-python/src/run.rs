@@ -5,7 +5,7 @@ use crate::array::{like, samples};
 use crate::choices::{STARTS, choice, none_left};
 use crate::error::{Raise, finite, number};
 use crate::evaluate;
-use crate::inputs::recording_of;
+use crate::inputs::recordings_of;
 use crate::inverse::Inverse;
 use crate::model::Model;
 use crate::pool::detached;
@@ -174,8 +174,9 @@ impl Model {
     ///
     /// Parameters
     /// ----------
-    /// recording : Recording, or array_like of shape (n,)
-    ///     An array is the input, and `output` is needed.
+    /// recording : Recording, list of Recording, or array_like of shape (n,)
+    ///     A list is one experiment: the model starts anew in each recording, series follow each
+    ///     other, and errors are over all. An array is the input, and `output` is needed.
     /// output : array_like, shape (n,), optional
     /// start : {'fitted', 'off', 'on', 'unknown'}
     ///     State of the operators before the first sample. 'fitted': as for `simulate`. 'unknown':
@@ -211,11 +212,11 @@ impl Model {
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         none_left("Model.evaluate", unknown, &["start", "time", "load"])?;
-        let recording = recording_of(recording, output, time, load)?;
+        let recordings = recordings_of(recording, output, time, load)?;
         evaluate::evaluate(
             py,
             &self.inner,
-            &recording,
+            &recordings,
             choice("start", start, &STARTS)?,
         )
     }

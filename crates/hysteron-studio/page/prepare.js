@@ -38,7 +38,7 @@ export function form(file, send) {
         el("button", { class: "first", "data-key": `prepare-${file.id}` }, "Prepare"),
         file.steps && el("button", { type: "button", "data-key": `raw-${file.id}`, onclick: () => (opened.delete(file.id), send("prepare", { steps: null })) }, "Take it as it was read"),
         el("small", { class: "quiet" }, "Each step: auto, off or a number; taken by itself only where it helps."))),
-    file.preparation && report(file.preparation),
+    ...file.preparation.map(report),
   );
 }
 

@@ -264,7 +264,7 @@ fn broken_files_are_refused_and_named() {
     assert_eq!(fault.unwrap_err().code, 105);
     // A bad row is named, and repaired on request.
     let file = session
-        .open("r.csv", "a,b\n1,2\nx,3\n2,5\n3,1\n".into())
+        .open("r.csv", "T,lift\n1,2\nx,3\n2,5\n3,1\n".into())
         .unwrap();
     let problem = overview(&mut session).files[0].problem.clone().unwrap();
     assert!(problem.problem.contains("line 3") && problem.remedy.unwrap().contains("Repair"));

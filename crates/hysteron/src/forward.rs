@@ -1,8 +1,8 @@
 //! Several models on the same recording, forward only.
 
 use crate::error::Result;
-use crate::evaluate::{begin, compare};
-use crate::model::{Model, Start};
+use crate::evaluate::{begin, compare, over_all};
+use crate::model::{FitSummary, Model, Start};
 use crate::recording::Recording;
 use crate::series::Errors;
 
@@ -35,17 +35,32 @@ pub struct Forward {
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 ///
+/// Several recordings are parts of one experiment, and the model starts anew in each.
+///
 /// # Errors
 /// As [`crate::evaluate_from`].
-pub fn forward(model: &Model, recording: &Recording, start: Start) -> Result<Forward> {
-    recording.check()?;
-    let (mut state, _) = begin(model, recording, start)?;
-    let (output_model, _) = model.run_over(&mut state, recording)?;
+pub fn forward(
+    model: &Model,
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
+    start: Start,
+) -> Result<Forward> {
+    let recordings = recordings.as_ref();
+    let (mut output_model, mut errors) = (Vec::new(), Vec::new());
+    for recording in recordings {
+        recording.check()?;
+        let (mut state, _) = begin(model, recording, start)?;
+        let (output, _) = model.run_over(&mut state, recording)?;
+        errors.push(compare(&recording.output, &output));
+        output_model.extend(output);
+    }
     let fit = model.fit.as_ref();
+    let of_all = |seen: fn(&FitSummary, &Recording) -> bool| {
+        fit.is_some_and(|fit| recordings.iter().all(|recording| seen(fit, recording)))
+    };
     Ok(Forward {
-        errors: compare(&recording.output, &output_model),
-        was_fitted: fit.is_some_and(|fit| fit.was_fitted_to(recording)),
-        seen_for_band: fit.is_some_and(|fit| fit.was_seen_for_band(recording)),
+        errors: over_all(errors, recordings)?,
+        was_fitted: of_all(FitSummary::was_fitted_to),
+        seen_for_band: of_all(FitSummary::was_seen_for_band),
         output_model,
     })
 }

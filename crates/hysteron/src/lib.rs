@@ -54,9 +54,10 @@ pub use batch::BatchModel;
 pub use data::{
     Added, Around, AtomicFile, AtomicFolder, Budget, Column, ColumnSummary, Columns, Counts,
     Destination, Growing, Invert, Locked, Memory, Note, NoteKind, Others, Own, PICTURE, Places,
-    ReadOptions, Remark, Repair, Roles, Row, STANDARD_OUTPUT, Segment, Simulate, TablePreview,
-    TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table, invert_table,
-    preview_table, printable, python_literal, refuse_one_file, shell_word, simulate_table,
+    ReadOptions, Remark, Repair, RoleDoubt, Roles, Row, STANDARD_OUTPUT, Segment, Simulate,
+    TablePreview, TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table,
+    invert_table, preview_table, preview_table_knowing, printable, python_literal, refuse_one_file,
+    shell_word, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
@@ -95,7 +96,7 @@ pub use prepare::{
     SensorLag, Smoothed, Spikes, Step, doubts, prepare, rate_dependence,
 };
 pub use progress::Progress;
-pub use recording::{HoldOut, Origin, Quantity, Recording, Source, Split};
+pub use recording::{HoldOut, Origin, Quantity, Recording, Source, Split, one_after_the_other};
 pub use remedy::{Remedy, Setting, SettingValue};
 pub use rivals::{Rival, RivalKind};
 pub use series::noise::noise;

@@ -35,7 +35,7 @@ fn model() -> Model {
 fn run(source: &Path, out: &Path, how: How) -> (Option<String>, Option<Vec<u8>>) {
     let around = Around {
         time: Some("t"),
-        load: None,
+        ..Around::default()
     };
     let work = || -> hysteron::Result<()> {
         let mut table = TableReader::open(source)?;

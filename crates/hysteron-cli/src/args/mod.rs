@@ -160,6 +160,29 @@ pub(crate) struct Repair {
     memory: Memory,
 }
 
+/// Repairs of a table whose rows all stay.
+#[derive(Args)]
+pub(crate) struct Rows {
+    /// Where the clock of --time goes back, begin another recording: the model begins anew
+    #[arg(long)]
+    repair: bool,
+    #[command(flatten)]
+    memory: Memory,
+}
+
+impl Rows {
+    pub(crate) fn what(&self) -> hysteron::Repair {
+        match self.repair {
+            true => hysteron::Repair::Mend,
+            false => hysteron::Repair::Refuse,
+        }
+    }
+
+    pub(crate) fn max_memory(&self) -> u64 {
+        self.memory.limit()
+    }
+}
+
 #[derive(Args)]
 pub(crate) struct Memory {
     /// Limit of the memory for the contents of a file, in bytes or with K, M or G [default: half of
@@ -178,16 +201,24 @@ impl Memory {
 impl From<&Repair> for hysteron::ReadOptions {
     fn from(args: &Repair) -> Self {
         Self {
-            repair: match args.repair {
-                true => hysteron::Repair::Mend,
-                false => hysteron::Repair::Refuse,
-            },
+            repair: args.what(),
             max_memory: args.memory.limit(),
         }
     }
 }
 
 impl Repair {
+    pub(crate) fn is_asked(&self) -> bool {
+        self.repair
+    }
+
+    pub(crate) fn what(&self) -> hysteron::Repair {
+        match self.repair {
+            true => hysteron::Repair::Mend,
+            false => hysteron::Repair::Refuse,
+        }
+    }
+
     /// For tables that are read without repair.
     pub(crate) fn max_memory(&self) -> u64 {
         self.memory.limit()
@@ -232,7 +263,7 @@ pub(crate) struct Simulate {
     #[arg(long)]
     pub(crate) band: bool,
     /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
-    /// creep or a lag
+    /// creep or a lag, and for --repair
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first row
@@ -243,7 +274,7 @@ pub(crate) struct Simulate {
     #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) memory: Memory,
+    pub(crate) repair: Rows,
     #[command(flatten)]
     pub(crate) force: Force,
     #[command(flatten)]
@@ -272,7 +303,7 @@ pub(crate) struct Invert {
     #[command(flatten)]
     pub(crate) load: Load,
     /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
-    /// creep or a lag
+    /// creep or a lag, and for --repair
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first row
@@ -295,7 +326,7 @@ pub(crate) struct Invert {
     #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) memory: Memory,
+    pub(crate) repair: Rows,
     #[command(flatten)]
     pub(crate) force: Force,
     #[command(flatten)]

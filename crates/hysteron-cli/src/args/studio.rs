@@ -1,6 +1,6 @@
 //! Options of `studio` and `start`.
 
-use super::{Json, Repair};
+use super::{Force, Json, Repair};
 #[cfg(feature = "studio")]
 use super::{Memory, up_to};
 use clap::Args;
@@ -29,12 +29,23 @@ pub(crate) struct Studio {
 pub(crate) struct Begin {
     /// The recording
     pub(crate) file: PathBuf,
-    /// Column of the input [default: guessed]
+    /// Column of the input [default: found by name, unit and values]
     #[arg(long, value_name = "COL")]
     pub(crate) input: Option<String>,
-    /// Column of the output [default: guessed]
+    /// Column of the output [default: as for --input]
     #[arg(long, value_name = "COL")]
     pub(crate) output: Option<String>,
+    /// Column of time: seconds, another unit in its name, or timestamps [default: as for --input]
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// Column of the load [default: as for --input, if it changes]
+    #[arg(long, value_name = "COL")]
+    pub(crate) load: Option<String>,
+    /// Also write the model of the first fit to this file
+    #[arg(short, value_name = "MODEL")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) repair: Repair,
     #[command(flatten)]

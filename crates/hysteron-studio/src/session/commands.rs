@@ -120,14 +120,21 @@ pub(super) fn python(session: &Session, fit: &Fitted) -> String {
             .map(|(name, column)| format!("{name}={}", python_literal(column)))
             .collect();
         words.extend(file.mend.then(|| "repair=True".to_owned()));
+        let several = file.has_several();
         let read = format!(
-            "pyhysteron.read({}, {})",
+            "pyhysteron.{}({}, {})",
+            if several { "read_segments" } else { "read" },
             python_literal(&file.name),
             words.join(", ")
         );
-        match &file.steps {
-            Some(steps) => format!("pyhysteron.prepare({read}{})[0]", steps.as_python()),
-            None => read,
+        match (&file.steps, several) {
+            (Some(steps), true) => format!(
+                "*[pyhysteron.prepare(part{})[0] for part in {read}]",
+                steps.as_python()
+            ),
+            (Some(steps), false) => format!("pyhysteron.prepare({read}{})[0]", steps.as_python()),
+            (None, true) => format!("*{read}"),
+            (None, false) => read,
         }
     };
     let list = |files: Vec<&Opened>| {
@@ -182,32 +189,52 @@ fn python_value(name: &str, text: &str) -> String {
 }
 
 pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
-    let read = |file: &&Opened| {
+    let read = |file: &&Opened, in_several: bool| {
         let roles = roles(file);
         let of = |name: &str| {
             let found = roles.iter().find(|(role, _)| *role == name);
             found.map(|(_, column)| literal(column))
         };
         let option = |name| of(name).map_or("None".into(), |column| format!("Some({column})"));
-        let read = format!(
-            "Recording::read({}.as_ref(), Columns {{ input: {}, output: {}, time: {}, load: {} \
-             }}, Repair::{})?.0",
-            literal(&file.name),
-            of("input").unwrap_or_default(),
-            of("output").unwrap_or_default(),
-            option("time"),
-            option("load"),
-            if file.mend { "Mend" } else { "Refuse" },
-        );
-        match &file.steps {
+        let read = |function| {
+            format!(
+                "Recording::{function}({}.as_ref(), Columns {{ input: {}, output: {}, time: {}, \
+                 load: {} }}, Repair::{})?.0",
+                literal(&file.name),
+                of("input").unwrap_or_default(),
+                of("output").unwrap_or_default(),
+                option("time"),
+                option("load"),
+                if file.mend { "Mend" } else { "Refuse" },
+            )
+        };
+        let prepared = |recording: &str| match &file.steps {
             Some(steps) => format!(
-                "    prepare(&{read}, &{}, Progress::NONE)?.0,\n",
+                "prepare(&{recording}, &{}, Progress::NONE)?.0",
                 steps.as_rust()
             ),
-            None => format!("    {read},\n"),
+            None => recording.to_owned(),
+        };
+        match (file.has_several(), in_several) {
+            (true, _) => format!(
+                "    {}\n        .into_iter()\n        .map(|part| Ok({}))\n        \
+                 .collect::<hysteron::Result<Vec<_>>>()?,\n",
+                read("read_segments"),
+                prepared("part.recording")
+            ),
+            (false, true) => format!("    vec![{}],\n", prepared(&read("read"))),
+            (false, false) => format!("    {},\n", prepared(&read("read"))),
         }
     };
-    let list = |ids: &[Id]| files(session, ids).iter().map(read).collect::<String>();
+    let list = |ids: &[Id]| {
+        let files = files(session, ids);
+        let several = files.iter().any(|file| file.has_several());
+        let each: String = files.iter().map(|file| read(file, several)).collect();
+        match several {
+            true => format!("[\n{each}]\n.concat()"),
+            false => format!("vec![\n{each}]"),
+        }
+    };
     let mut text =
         "use hysteron::{Columns, Fit, HoldOut, Recording, Repair, fit_holding_out};\n".to_owned();
     let all = files(session, &fit.files);
@@ -215,7 +242,7 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
         text += "use hysteron::{PrepareOptions, Progress, Step, prepare};\n";
     }
     text += "\n";
-    text += &format!("let recordings = vec![\n{}];\n", list(&fit.files));
+    text += &format!("let recordings = {};\n", list(&fit.files));
     text += "let fit = Fit::new()";
     for (name, word) in &fit.options {
         text += &format!("\n    .with({}, {})?", literal(name), literal(word));
@@ -224,7 +251,7 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
     text += &match fit.words.as_str() {
         "" => "let model = fit.run(&recordings)?;\n".to_owned(),
         FILES => format!(
-            "let hold_out = HoldOut::Recordings(vec![\n{}]);\n{HELD}",
+            "let hold_out = HoldOut::Recordings({});\n{HELD}",
             list(&fit.validated)
         ),
         part => format!(

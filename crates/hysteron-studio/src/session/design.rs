@@ -77,7 +77,9 @@ impl Session {
         let files = fitted.files.iter().filter(|_| !wish.whole);
         for file in files.filter_map(|file| self.file(*file).ok()) {
             // Where there is a thermal body, the plane is that of the temperature.
-            recorded.push(fitted.model.behind_body(file.recording()?)?.input.clone());
+            for recording in file.parts()?.all() {
+                recorded.push(fitted.model.behind_body(recording)?.input.clone());
+            }
         }
         let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
         Ok(design(&options, &inputs)?)

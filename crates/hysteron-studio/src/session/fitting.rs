@@ -3,9 +3,10 @@
 use super::fault::Fault;
 use super::id::Id;
 use super::job::{Finished, Job, JobView, Watch, build};
-use super::opened::{Purpose, numbers_of};
+use super::opened::Purpose;
+use super::parts::numbers_of;
 use super::state::{MOST, Running, Session};
-use hysteron::{HoldOut, Recording};
+use hysteron::HoldOut;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -66,7 +67,7 @@ impl Session {
         };
         let mut recordings = Vec::new();
         for file in of(Purpose::Fit) {
-            recordings.push(Recording::clone(file.recording()?));
+            recordings.extend_from_slice(file.parts()?.all());
         }
         if recordings.is_empty() {
             return Err(Fault::missing(
@@ -79,7 +80,7 @@ impl Session {
             .collect();
         let mut others = Vec::new();
         for file in of(Purpose::Validate) {
-            others.push(Recording::clone(file.recording()?));
+            others.extend_from_slice(file.parts()?.all());
         }
         let mut validated = Vec::new();
         let (hold_out, words) = match (held, marked.is_empty()) {

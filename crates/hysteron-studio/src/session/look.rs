@@ -114,7 +114,7 @@ pub struct Line {
 impl Session {
     /// The modelled output of a fit on a file.
     pub(super) fn course(&mut self, fit: Id, file: Id) -> Result<Arc<Vec<f64>>, Fault> {
-        let recording = self.file(file)?.recording()?.clone();
+        let parts = self.file(file)?.parts()?.clone();
         let fitted = self.fitted(fit)?;
         if let Some((course, _)) = fitted.courses.get(&file) {
             return Ok(course.clone());
@@ -125,9 +125,9 @@ impl Session {
             false => Start::Unknown,
         };
         let model = fitted.model.clone();
-        let bytes = (size_of::<f64>() * recording.len()) as u64;
+        let bytes = (size_of::<f64>() * parts.shown.len()) as u64;
         let held = self.held(bytes, "the output of a model")?;
-        let run = |start| forward(&model, &recording, start).map(|run| run.output_model);
+        let run = |start| forward(&model, parts.all(), start).map(|run| run.output_model);
         let course = Arc::new(run(start).or_else(|_| run(Start::Fitted))?);
         let fits = self.fits.iter_mut().find(|other| other.id == fit);
         if let Some(fitted) = fits {
@@ -182,7 +182,7 @@ impl Session {
         };
         let mut lines = Vec::new();
         if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
-            lines.extend(before(raw, view));
+            lines.extend(before(&raw.shown, view));
         }
         let residual = |course: &Arc<Vec<f64>>, n: usize| course[n] - recording.output[n];
         match view.picture {

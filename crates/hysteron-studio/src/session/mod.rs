@@ -1,7 +1,7 @@
 //! The session: what is open, without a transport. A request in, a response out.
 //!
 //! `request` defines both, `handle` leads from one to the other, `fault` is what is wrong. `state` is
-//! what the session keeps. `opened` is a file, `prepare` its preparation,
+//! what the session keeps. `opened` is a file, `parts` its recordings, `prepare` their preparation,
 //! `design` the experiment that is missing. `fitting` asks for a fit, `job` is its work, `fitted` what
 //! it found; `carried` has these as bytes. `look` and `plane` make the pictures, from what `thinned`
 //! leaves. `drive` is a model moved by hand, `take_home` what can be taken away, `commands` the same
@@ -20,6 +20,7 @@ mod id;
 mod job;
 mod look;
 mod opened;
+mod parts;
 mod plane;
 mod prepare;
 mod request;

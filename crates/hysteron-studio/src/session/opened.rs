@@ -1,7 +1,8 @@
-//! A file that is open: its bytes, its columns, and the recording that they make.
+//! A file that is open: its bytes, its columns, and the recordings that they make.
 
 use super::fault::Fault;
 use super::id::Id;
+use super::parts::Parts;
 use super::prepare::Steps;
 use super::thinned::when;
 use bytes::Bytes;
@@ -24,12 +25,6 @@ pub enum Purpose {
     Validate,
     /// It is only looked at.
     Look,
-}
-
-/// Memory of the numbers of a recording.
-pub(super) fn numbers_of(recording: &Recording) -> u64 {
-    let series = 2 + u64::from(recording.time.is_some()) + u64::from(recording.load.is_some());
-    series * (size_of::<f64>() * recording.len()) as u64
 }
 
 /// Columns by their names.
@@ -62,10 +57,11 @@ pub(super) struct Opened {
     pub(super) marked: Vec<(usize, usize)>,
     pub(super) steps: Option<Steps>,
     /// As it was read.
-    raw: Option<Arc<Recording>>,
+    raw: Option<Parts>,
     /// After the preparation.
-    recording: Result<Arc<Recording>, Fault>,
-    preparation: Option<Preparation>,
+    parts: Result<Parts, Fault>,
+    /// What the preparation did, for each recording.
+    preparation: Vec<Preparation>,
     /// Branches of its input. They are counted once: a page asks often.
     branches: usize,
     repair: Option<RepairView>,
@@ -120,16 +116,18 @@ pub struct FileView {
     pub repair: Option<RepairView>,
     /// The steps of its preparation; `None` if it is taken as it is.
     pub steps: Option<Steps>,
-    /// What the preparation did.
-    pub preparation: Option<Preparation>,
+    /// What the preparation did, for each recording.
+    pub preparation: Vec<Preparation>,
     /// Whether rows are repaired.
     pub mend: bool,
     /// What it is for.
     pub purpose: Purpose,
     /// Spans of rows marked for validation, in order, counted from 1.
     pub marked: Vec<(usize, usize)>,
-    /// Samples of the recording.
+    /// Samples of its recordings.
     pub samples: usize,
+    /// The first sample of each recording, counted from 1: the actuator's history does not go on.
+    pub begins: Vec<usize>,
     /// Branches of its input.
     pub branches: usize,
     /// The input, with its unit.
@@ -164,8 +162,8 @@ impl Opened {
             marked: Vec::new(),
             steps: None,
             raw: None,
-            recording: Err(Fault::defect("not read yet")),
-            preparation: None,
+            parts: Err(Fault::defect("not read yet")),
+            preparation: Vec::new(),
             branches: 0,
             repair: None,
             notes: Vec::new(),
@@ -206,28 +204,28 @@ impl Opened {
     /// Prepares the recording, or takes it as it is. A refusal leaves it as it was.
     pub(super) fn set_steps(&mut self, steps: Option<Steps>) -> Result<(), Fault> {
         let raw = self.raw.clone();
-        let raw = raw.ok_or_else(|| match &self.recording {
+        let raw = raw.ok_or_else(|| match &self.parts {
             Err(fault) => fault.clone(),
             Ok(_) => Fault::defect("not read yet"),
         })?;
         let steps = steps.map(Steps::checked).transpose()?;
         let before = (
-            self.recording.clone(),
+            self.parts.clone(),
             self.preparation.clone(),
             self.steps.clone(),
         );
-        let (recording, preparation) = prepared(&raw, steps.as_ref(), self.held.memory())?;
-        (self.recording, self.preparation, self.steps) = (Ok(recording), preparation, steps);
+        let (parts, preparation) = prepared(&raw, steps.as_ref(), self.held.memory())?;
+        (self.parts, self.preparation, self.steps) = (Ok(parts), preparation, steps);
         if let Err(fault) = self.hold() {
-            (self.recording, self.preparation, self.steps) = before;
+            (self.parts, self.preparation, self.steps) = before;
             return Err(fault);
         }
         self.keep_marked();
         Ok(())
     }
 
-    /// The recording before its preparation.
-    pub(super) fn raw(&self) -> Option<&Arc<Recording>> {
+    /// The recordings before their preparation.
+    pub(super) fn raw(&self) -> Option<&Parts> {
         self.raw.as_ref().filter(|_| self.steps.is_some())
     }
 
@@ -270,8 +268,19 @@ impl Opened {
             .ok_or_else(|| Fault::missing("there is no sample in this span", "mark a longer one"))
     }
 
+    /// The recordings one after the other, to be shown.
     pub(super) fn recording(&self) -> Result<&Arc<Recording>, Fault> {
-        self.recording.as_ref().map_err(Clone::clone)
+        Ok(&self.parts()?.shown)
+    }
+
+    /// The recordings, for a model to run over.
+    pub(super) fn parts(&self) -> Result<&Parts, Fault> {
+        self.parts.as_ref().map_err(Clone::clone)
+    }
+
+    /// Whether it holds several recordings.
+    pub(super) fn has_several(&self) -> bool {
+        self.parts.as_ref().is_ok_and(|parts| parts.all().len() > 1)
     }
 
     /// Takes memory for the bytes, their preview, and the numbers read from them.
@@ -286,40 +295,36 @@ impl Opened {
         const COLUMN: usize = PICTURE * size_of::<Option<(f64, f64)>>() + 200;
         let columns = self.preview.table.columns.iter();
         let preview: usize = columns.map(|column| column.name.len() + COLUMN).sum();
-        let samples = self.recording.as_deref().map_or(0, numbers_of);
-        let raw = self.raw().map_or(0, |raw| numbers_of(raw));
+        let samples = self.parts.as_ref().map_or(0, Parts::size);
+        let raw = self.raw().map_or(0, Parts::size);
         (self.bytes.len() + preview) as u64 + samples + raw
     }
 
     /// Makes the recording of the columns.
     fn read(&mut self) {
-        (self.raw, self.preparation, self.repair) = (None, None, None);
+        (self.raw, self.preparation, self.repair) = (None, Vec::new(), None);
         match self.try_read(self.mend) {
             Ok((raw, notes)) => {
-                let raw = Arc::new(raw);
-                (self.recording, self.notes) =
-                    match prepared(&raw, self.steps.as_ref(), self.held.memory()) {
-                        Ok((recording, preparation)) => {
-                            self.preparation = preparation;
-                            (Ok(recording), notes)
-                        }
-                        Err(fault) => (Err(fault), notes),
-                    };
-                self.raw = Some(raw);
+                let found = prepared(&raw, self.steps.as_ref(), self.held.memory());
+                self.parts = found.map(|(parts, preparation)| {
+                    self.preparation = preparation;
+                    parts
+                });
+                (self.raw, self.notes) = (Some(raw), notes);
             }
             Err(fault) => {
                 if !self.mend {
                     let would = self.try_read(true).ok();
-                    self.repair = would.map(|(recording, notes)| RepairView {
+                    self.repair = would.map(|(parts, notes)| RepairView {
                         notes,
-                        samples: recording.len(),
+                        samples: parts.shown.len(),
                     });
                 }
-                (self.recording, self.notes) = (Err(fault), self.remarks.clone());
+                (self.parts, self.notes) = (Err(fault), self.remarks.clone());
             }
         }
         if let Err(fault) = self.hold() {
-            (self.recording, self.raw, self.preparation) = (Err(fault), None, None);
+            (self.parts, self.raw, self.preparation) = (Err(fault), None, Vec::new());
             // It is less than before.
             let _ = self.hold();
         }
@@ -328,15 +333,14 @@ impl Opened {
 
     /// What hangs on the number of samples, after the recording has changed.
     fn keep_marked(&mut self) {
-        self.branches = self.recording.as_ref().map_or(0, |recording| {
+        let of = |recording: &Recording| {
             let input = &recording.input;
             let of_samples = branches(input, usual_tolerance(input));
             of_samples.last().map_or(0, |last| last + 1)
-        });
-        let count = self
-            .recording
-            .as_ref()
-            .map_or(0, |recording| recording.len());
+        };
+        let parts = self.parts.as_ref();
+        self.branches = parts.map_or(0, |parts| parts.all().iter().map(of).sum());
+        let count = parts.map_or(0, |parts| parts.shown.len());
         self.marked.retain(|(_, last)| *last <= count);
         // Of a recording that is shorter now, all may be marked.
         if self.marked == [(1, count)] {
@@ -344,7 +348,7 @@ impl Opened {
         }
     }
 
-    fn try_read(&self, mend: bool) -> Result<(Recording, Vec<String>), Fault> {
+    fn try_read(&self, mend: bool) -> Result<(Parts, Vec<String>), Fault> {
         let Part {
             input,
             output,
@@ -362,9 +366,10 @@ impl Opened {
         };
         let repair = if mend { Repair::Mend } else { Repair::Refuse };
         let (bytes, memory) = (self.bytes.clone(), self.held.memory());
-        let read = Recording::from_bytes_within(&self.name, bytes, columns, repair, memory);
-        let (recording, notes) = read?;
-        Ok((recording, notes.iter().map(ToString::to_string).collect()))
+        let read = Recording::segments_within(&self.name, bytes, columns, repair, memory);
+        let (segments, notes) = read?;
+        let notes = notes.iter().map(ToString::to_string).collect();
+        Ok((Parts::of_segments(segments)?, notes))
     }
 
     pub(super) fn view(&self) -> FileView {
@@ -378,7 +383,8 @@ impl Opened {
             summary: summary.clone(),
             picture: picture.clone(),
         });
-        let recording = self.recording.as_ref().ok();
+        let recording = self.recording().ok();
+        let begins = self.parts.iter().flat_map(Parts::begins);
         let shown = |of: fn(&Recording) -> &Quantity| recording.map(|r| of(r).to_column());
         FileView {
             id: self.id,
@@ -390,7 +396,7 @@ impl Opened {
             roles: self.roles.clone(),
             reasons: self.preview.roles.reasons.clone(),
             notes: self.notes.clone(),
-            problem: self.recording.as_ref().err().cloned(),
+            problem: self.parts.as_ref().err().cloned(),
             repair: self.repair.clone(),
             steps: self.steps.clone(),
             preparation: self.preparation.clone(),
@@ -398,6 +404,7 @@ impl Opened {
             purpose: self.purpose,
             marked: self.marked.clone(),
             samples: recording.map_or(0, |recording| recording.len()),
+            begins: begins.map(|begin| begin + 1).collect(),
             branches: self.branches,
             input: shown(|recording| &recording.input_quantity),
             output: shown(|recording| &recording.output_quantity),
@@ -412,25 +419,32 @@ fn digest(bytes: &[u8]) -> u64 {
     hasher.finish() >> 11
 }
 
-/// A recording after these steps, and what they did.
+/// Recordings after these steps, and what they did.
 fn prepared(
-    raw: &Arc<Recording>,
+    raw: &Parts,
     steps: Option<&Steps>,
     memory: &Memory,
-) -> Result<(Arc<Recording>, Option<Preparation>), Fault> {
+) -> Result<(Parts, Vec<Preparation>), Fault> {
     let Some(steps) = steps else {
-        return Ok((raw.clone(), None));
+        return Ok((raw.clone(), Vec::new()));
     };
     let options = steps.options()?;
-    // Equal steps may be many.
-    if let (Step::Value(step), Some([first, .., last])) = (options.resample, raw.time.as_deref()) {
-        let most = memory.left() as f64 / (8 * size_of::<f64>()) as f64;
-        if (last - first) / step > most {
-            return Err(Fault::too_large("a recording in such steps", memory.left()));
+    let (mut recordings, mut reports) = (Vec::new(), Vec::new());
+    for raw in raw.all() {
+        // Equal steps may be many.
+        if let (Step::Value(step), Some([first, .., last])) =
+            (options.resample, raw.time.as_deref())
+        {
+            let most = memory.left() as f64 / (8 * size_of::<f64>()) as f64;
+            if (last - first) / step > most {
+                return Err(Fault::too_large("a recording in such steps", memory.left()));
+            }
         }
+        let (recording, report) = prepare(raw, &options, Progress::NONE)?;
+        recordings.push(recording);
+        reports.push(report);
     }
-    let (recording, report) = prepare(raw, &options, Progress::NONE)?;
-    Ok((Arc::new(recording), Some(report)))
+    Ok((Parts::new(recordings)?, reports))
 }
 
 /// The last part of a path, safe to show.

@@ -133,21 +133,25 @@ impl Session {
         })
     }
 
-    /// The state of a model after the first `count` rows of a file. It goes on from the state that
+    /// The state of a model after the first `count` rows of a file, from where the last of their
+    /// recordings begins. It goes on from the state that
     /// was asked for before, where that is no later: a play through the time takes each row once.
     fn state_at(&mut self, fit: Id, file: Id, count: usize) -> Result<State, Fault> {
-        let recording = self.file(file)?.recording()?.clone();
+        let parts = self.file(file)?.parts()?.clone();
+        let recording = &parts.shown;
+        let begin = parts.begins().take_while(|begin| *begin < count).last();
+        let begin = begin.unwrap_or_default();
         let fitted = self.fits.iter_mut().find(|other| other.id == fit);
         let fitted = fitted.ok_or_else(|| Fault::gone("fit", fit))?;
         let reached = fitted.reached.take();
         // A model that depends on time has to see each step of it.
         let goes_on = |(of, at, _): &(Id, usize, State)| {
-            *of == file && *at <= count && !fitted.model.is_timed()
+            *of == file && (begin..=count).contains(at) && !fitted.model.is_timed()
         };
         let reached = reached.filter(goes_on);
         let (from, mut state) = match reached {
             Some((_, at, state)) => (at, state),
-            None => (0, fitted.model.start()),
+            None => (begin, fitted.model.start()),
         };
         let rows = from..count;
         let model = &fitted.model;

@@ -5,14 +5,16 @@ use super::commands;
 use super::fault::Fault;
 use super::id::Id;
 use super::look::View;
+use super::parts::Parts;
 use super::state::Session;
 use super::thinned::rows;
 use super::wish::Wish;
 use base64::Engine;
-use hysteron::{Recording, TableWriter, evaluate};
+use hysteron::{TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
 use hysteron_report::{Made, Report};
 use serde::{Deserialize, Serialize, Serializer};
+use std::borrow::Cow;
 use std::io::{Cursor, Write};
 use std::path::Path;
 
@@ -205,14 +207,18 @@ impl Session {
     fn report(&self, fit: Id, file: Id) -> Result<Download, Fault> {
         let model = &self.fitted(fit)?.model;
         let opened = self.file(file)?;
-        let recording = opened.recording()?;
-        let evaluation = evaluate(model, recording)?;
+        let recordings = opened.parts()?.all();
+        let evaluation = evaluate(model, recordings)?;
         let title = format!("fit {fit} on {}", opened.name);
-        let seen: &Recording = &*model.behind_body(recording)?;
+        let behind = recordings
+            .iter()
+            .map(|recording| model.behind_body(recording));
+        let behind = behind.map(|recording| recording.map(Cow::into_owned));
+        let seen = Parts::new(behind.collect::<hysteron::Result<_>>()?)?;
         let report = Report {
             title: &title,
             model,
-            recording: seen,
+            recording: &seen.shown,
             evaluation: &evaluation,
             made: Made::default(),
         };

@@ -33,7 +33,7 @@ pub use window::Window;
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::progress::Progress;
-use crate::recording::Recording;
+use crate::recording::{Recording, no_recordings, one_after_the_other};
 use crate::series::Errors;
 use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde::Serialize;
@@ -100,16 +100,18 @@ impl Compared {
 }
 
 impl Adapted {
-    /// Measured minus expected output, for each sample of the recording.
+    /// Measured minus expected output, for each sample of the recordings.
     #[must_use]
-    pub fn errors(&self, recording: &Recording) -> Vec<f64> {
-        let pairs = recording.output.iter().zip(&self.output_model);
+    pub fn errors(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Vec<f64> {
+        let measured = recordings.as_ref().iter().flat_map(|r| &r.output);
+        let pairs = measured.zip(&self.output_model);
         pairs.map(|(measured, model)| measured - model).collect()
     }
 }
 
 /// Runs an estimator over a recording. For each sample it returns the expected output before it
-/// learns from the measured one.
+/// learns from the measured one. Several recordings are parts of one experiment, such as the segments
+/// of a file: the operators start anew in each, and what was learned goes on.
 ///
 /// ```
 /// use hysteron::{AdaptOptions, Model, Operator, Plane, Progress, Recording, Sign, adapt};
@@ -134,37 +136,57 @@ impl Adapted {
 /// - The error that `progress` returns.
 pub fn adapt(
     model: &Model,
-    recording: &Recording,
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
     options: &AdaptOptions,
     progress: Progress<'_>,
 ) -> Result<Adapted> {
-    recording.check()?;
+    let recordings = recordings.as_ref();
+    recordings.iter().try_for_each(Recording::check)?;
+    let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
     if options.learner == Learner::Load {
-        return unknown_load::adapt(model, recording, options, progress);
+        return unknown_load::adapt(model, (recordings, &joined), options, progress);
     }
     if !model.is_plain() && model.load.is_none() {
-        return adapt_within(model, recording, options, progress);
+        return adapt_within(model, recordings, options, progress);
     }
     refuse_unusable(model)?;
-    let learned_by = options.resolve(model, recording)?;
+    let learned_by = options.resolve(model, &joined)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
-    let (from_on, fixed) = fixed(&offline, recording, options.start)?;
-    if from_on {
-        adaptive.saturate()?;
-    }
-    let count = recording.len();
+    let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
+    let count = joined.len();
     let probation = on_probation(learned_by, count);
-    let (input, late_input) = recording.input.split_at(count - probation);
-    let (output, late_output) = recording.output.split_at(count - probation);
-    let mut learned = adaptive.run(input, output, progress)?;
-    adaptive.refit()?;
-    let last = adaptive.model()?;
-    let told = |what: &'static str, _: f64| progress.tell(what, 1.0);
-    learned.extend(adaptive.run(late_input, late_output, Progress::new(&told))?);
+    let mut learned = Vec::with_capacity(count);
+    let mut last = None;
+    for recording in recordings {
+        match (from_on, learned.is_empty()) {
+            (true, _) => adaptive.saturate()?,
+            (false, true) => {}
+            (false, false) => adaptive.reset()?,
+        }
+        // Those up to the samples on probation, and these.
+        let sure = (count - probation).saturating_sub(learned.len());
+        let sure = sure.min(recording.len());
+        for part in [0..sure, sure..recording.len()] {
+            let before = learned.len();
+            if last.is_none() && before + probation >= count {
+                adaptive.refit()?;
+                last = Some(adaptive.model()?);
+            }
+            let told = |what: &'static str, share: f64| {
+                let done = before as f64 + share * part.len() as f64;
+                progress.tell(what, done / count as f64)
+            };
+            let (input, output) = (
+                &recording.input[part.clone()],
+                &recording.output[part.clone()],
+            );
+            learned.extend(adaptive.run(input, output, Progress::new(&told))?);
+        }
+    }
     Learned {
         offline,
-        last,
+        last: last.ok_or_else(no_samples)?,
         learned,
         fixed,
         from_on,
@@ -172,10 +194,10 @@ pub fn adapt(
         shift: None,
         options: learned_by,
     }
-    .judged(recording, options)
+    .judged((recordings, &joined), options)
 }
 
-/// What an estimator made of a recording.
+/// What an estimator made of recordings.
 struct Learned {
     offline: Model,
     last: Model,
@@ -189,8 +211,12 @@ struct Learned {
 }
 
 impl Learned {
-    /// Compares it with the model left alone.
-    fn judged(self, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
+    /// Compares it with the model left alone. `joined` are the recordings one after the other.
+    fn judged(
+        self,
+        (recordings, joined): (&[Recording], &Recording),
+        options: &AdaptOptions,
+    ) -> Result<Adapted> {
         let Self {
             offline,
             mut last,
@@ -198,14 +224,14 @@ impl Learned {
             fixed,
             ..
         } = self;
-        let count = recording.len();
+        let count = joined.len();
         let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
         let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
         let counts = OutcomeCounts::of(&learned);
         let compare = |which: &dyn Fn(usize) -> bool| {
             Some(Compared {
-                adapting: Errors::between(&recording.output, &output_model, which)?,
-                fixed: Errors::between(&recording.output, &fixed, which)?,
+                adapting: Errors::between(&joined.output, &output_model, which)?,
+                fixed: Errors::between(&joined.output, &fixed, which)?,
             })
         };
         let whole = compare(&|_| true).ok_or_else(no_samples)?;
@@ -215,17 +241,17 @@ impl Learned {
             .collect::<Option<_>>()
             .unwrap_or_default();
         let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
-        let stuck = Stuck::all(&outcomes, recording, &fixed);
+        let stuck = Stuck::all(&outcomes, joined, &fixed);
         let alive = |n: &usize| stuck.iter().all(|stuck| !stuck.samples.contains(n));
         let alive: Vec<usize> = (0..count).filter(alive).collect();
         let last_third = &alive[2 * alive.len() / 3..];
         let late = compare(&|n| last_third.binary_search(&n).is_ok() && judges(n));
-        let again = run_from(&last, self.from_on, recording)?;
-        let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
+        let again = run_from(&last, self.from_on, recordings)?;
+        let again = Errors::between(&joined.output, &again, |_| true).ok_or_else(no_samples)?;
         last.fit = Some(summary(
             &last,
             &offline,
-            recording,
+            joined,
             options,
             self.options.described(),
             (&again, counts),
@@ -255,17 +281,24 @@ impl Learned {
 /// creep and lag.
 fn adapt_within(
     model: &Model,
-    recording: &Recording,
+    recordings: &[Recording],
     options: &AdaptOptions,
     progress: Progress<'_>,
 ) -> Result<Adapted> {
-    let seen = model.recording_within(recording)?;
+    let seen = recordings.iter().map(|recording| {
+        let seen = model.recording_within(recording)?;
+        Ok(seen.into_owned())
+    });
+    let seen: Vec<Recording> = seen.collect::<Result<_>>()?;
     let mut adapted = adapt(&model.within(), &seen, options, progress)?;
     let mut whole = model.around(adapted.model.operators().clone());
     whole.fit = adapted.model.fit.take();
     adapted.model = whole;
     // With these, measured minus expected is the error of the operators.
-    let outputs = recording.output.iter().zip(&seen.output);
+    let all = |recordings: &[Recording]| -> Vec<f64> {
+        recordings.iter().flat_map(|r| &r.output).copied().collect()
+    };
+    let outputs = all(recordings).into_iter().zip(all(&seen));
     for (expected, (measured, before)) in adapted.output_model.iter_mut().zip(outputs) {
         *expected += measured - before;
     }
@@ -299,10 +332,10 @@ fn no_samples() -> Error {
 }
 
 /// Whether the operators start on, and the outputs of the fixed model.
-fn fixed(model: &Model, recording: &Recording, start: Start) -> Result<(bool, Vec<f64>)> {
-    let from = |on| run_from(model, on, recording);
+fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(bool, Vec<f64>)> {
+    let from = |on| run_from(model, on, recordings);
     let error = |output: &[f64]| {
-        let pairs = recording.output.iter().zip(output);
+        let pairs = recordings.iter().flat_map(|r| &r.output).zip(output);
         pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>()
     };
     match start {
@@ -319,15 +352,19 @@ fn fixed(model: &Model, recording: &Recording, start: Start) -> Result<(bool, Ve
     }
 }
 
-fn run_from(model: &Model, on: bool, recording: &Recording) -> Result<Vec<f64>> {
-    let mut state = match on {
-        true => model.saturated(),
-        false => model.off(),
-    };
-    let mut output = vec![0.0; recording.len()];
-    let around = Surroundings::of(model, recording);
-    model.run_in(&mut state, &recording.input, around, &mut output)?;
-    Ok(output)
+/// The outputs of a model that starts off or on in each recording.
+fn run_from(model: &Model, on: bool, recordings: &[Recording]) -> Result<Vec<f64>> {
+    let mut all = Vec::new();
+    for recording in recordings {
+        let mut state = match on {
+            true => model.saturated(),
+            false => model.off(),
+        };
+        let (begin, around) = (all.len(), Surroundings::of(model, recording));
+        all.resize(begin + recording.len(), 0.0);
+        model.run_in(&mut state, &recording.input, around, &mut all[begin..])?;
+    }
+    Ok(all)
 }
 
 /// The summary for the file of the adapted model.

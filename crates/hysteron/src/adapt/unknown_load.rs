@@ -24,40 +24,46 @@ pub struct ShiftFound {
     pub from: Option<f64>,
 }
 
+/// `joined` are the recordings one after the other.
 pub(super) fn adapt(
     model: &Model,
-    recording: &Recording,
+    (recordings, joined): (&[Recording], &Recording),
     options: &AdaptOptions,
     progress: Progress<'_>,
 ) -> Result<Adapted> {
-    let learned_by = options.resolve(model, recording)?;
+    let learned_by = options.resolve(model, joined)?;
     let mut adaptive = AdaptiveLoad::new(model, options.load, learned_by.shift()?)?;
     let offline = match adaptive.told() {
         Some(load) => model.at_load(load)?,
         None => model.clone(),
     };
-    let (from_on, fixed) = fixed(&offline, recording, options.start)?;
-    if from_on {
-        adaptive.saturate();
-    }
-    let count = recording.len();
+    let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
+    let count = joined.len();
     let probation = on_probation(learned_by, count);
-    let around = Surroundings {
-        load: None,
-        ..Surroundings::of(model, recording)
-    };
     let (mut learned, mut shifts, mut loads) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = adaptive.clone();
-    for (n, sample) in around.samples(model, &recording.input)? {
-        if n % SAMPLES_BETWEEN == 0 {
-            progress.tell("adaptation", n as f64 / count as f64)?;
+    for recording in recordings {
+        match (from_on, learned.is_empty()) {
+            (true, _) => adaptive.saturate(),
+            (false, true) => {}
+            (false, false) => adaptive.reset(),
         }
-        if n + probation == count {
-            last = adaptive.clone();
+        let around = Surroundings {
+            load: None,
+            ..Surroundings::of(model, recording)
+        };
+        for (n, sample) in around.samples(model, &recording.input)? {
+            let done = learned.len();
+            if done % SAMPLES_BETWEEN == 0 {
+                progress.tell("adaptation", done as f64 / count as f64)?;
+            }
+            if done + probation == count {
+                last = adaptive.clone();
+            }
+            shifts.push(adaptive.shift());
+            loads.extend(adaptive.load());
+            learned.push(adaptive.step(sample, recording.output[n])?);
         }
-        shifts.push(adaptive.shift());
-        loads.extend(adaptive.load());
-        learned.push(adaptive.step(sample, recording.output[n])?);
     }
     if probation == 0 {
         last = adaptive;
@@ -81,5 +87,5 @@ pub(super) fn adapt(
         shift: Some(found),
         options: learned_by,
     }
-    .judged(recording, options)
+    .judged((recordings, joined), options)
 }

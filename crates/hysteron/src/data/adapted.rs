@@ -2,11 +2,12 @@
 
 use crate::adapt::Adapted;
 use crate::data::output::TableWriter;
+use crate::data::recording::write_all;
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 
 impl Adapted {
-    /// Writes the recording as a table with three more columns: `output_model` (expected before the
+    /// Writes the recordings, one after the other, as a table with three more columns: `output_model` (expected before the
     /// sample was learned from), `error` (measured minus expected) and `outcome` (`learned`,
     /// `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`, `output-stuck`,
     /// `input-stuck`). With [`crate::Learner::Load`] also
@@ -14,22 +15,28 @@ impl Adapted {
     /// it, `load_model`.
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] if `recording` does not have as many samples as the
-    /// one adapted to.
-    pub fn write_table(&self, recording: &Recording, table: TableWriter) -> Result<()> {
-        if recording.len() != self.outcomes.len() {
+    /// [`Error::File`]; [`Error::Recording`] if `recordings` do not have as many samples as those
+    /// adapted to.
+    pub fn write_table(
+        &self,
+        recordings: &(impl AsRef<[Recording]> + ?Sized),
+        table: TableWriter,
+    ) -> Result<()> {
+        let recordings = recordings.as_ref();
+        let samples: usize = recordings.iter().map(Recording::len).sum();
+        if samples != self.outcomes.len() {
+            let source = recordings.first().and_then(|first| first.source.as_ref());
             return Err(Error::Recording {
-                path: recording.source.as_ref().map(|source| source.path.clone()),
+                path: source.map(|source| source.path.clone()),
                 row: None,
                 column: None,
                 problem: format!(
-                    "{} samples, where the model was adapted to {}",
-                    recording.len(),
+                    "{samples} samples, where the model was adapted to {}",
                     self.outcomes.len()
                 ),
             });
         }
-        let errors = self.errors(recording);
+        let errors = self.errors(recordings);
         let of = |n: usize| {
             [
                 self.output_model[n].to_string(),
@@ -40,17 +47,18 @@ impl Adapted {
         let added = ["output_model", "error", "outcome"];
         let [output, error, outcome] = added;
         let Some(found) = &self.shift else {
-            return recording.write_with(table, &added, of);
+            return write_all(recordings, table, &added, of);
         };
         let shift = |n: usize| found.shifts[n].to_string();
         let Some(loads) = &found.loads else {
-            return recording.write_with(table, &[output, error, outcome, "shift_model"], |n| {
+            let added = [output, error, outcome, "shift_model"];
+            return write_all(recordings, table, &added, |n| {
                 let [output, error, outcome] = of(n);
                 [output, error, outcome, shift(n)]
             });
         };
         let added = [output, error, outcome, "shift_model", "load_model"];
-        recording.write_with(table, &added, |n| {
+        write_all(recordings, table, &added, |n| {
             let [output, error, outcome] = of(n);
             [output, error, outcome, shift(n), loads[n].to_string()]
         })

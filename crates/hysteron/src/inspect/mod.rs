@@ -8,8 +8,7 @@ use crate::error::Result;
 use crate::identify::determined;
 use crate::model::Plane;
 use crate::prepare::{Doubt, doubts};
-use crate::recording::Recording;
-use crate::recording::gaps;
+use crate::recording::{GAP, Quantity, Recording, no_recordings, one_after_the_other};
 use crate::series::NOISE;
 use crate::series::Turning;
 use crate::series::range;
@@ -38,6 +37,8 @@ pub struct Series {
 pub struct RecordingSummary {
     /// Number of samples.
     pub samples: usize,
+    /// Number of recordings: each has a history of its own.
+    pub segments: usize,
     /// The input.
     pub input: Series,
     /// The output.
@@ -68,9 +69,9 @@ pub struct RecordingSummary {
 pub struct Sampling {
     /// Time of the first sample, in seconds.
     pub start: f64,
-    /// Time of the last sample, in seconds.
+    /// Time of the last sample, in seconds. A clock that was set back may have it before the first.
     pub end: f64,
-    /// Median time between samples, in seconds.
+    /// Median time between samples of one recording, in seconds.
     pub median_step: f64,
     /// Longest time between samples, in seconds.
     pub longest_step: f64,
@@ -82,19 +83,28 @@ pub struct Sampling {
     pub repeated: usize,
 }
 
-/// Summarises `recording`, and counts the operators of `plane` that it excites and the combinations
-/// of their weights that it determines.
+/// Summarises `recordings`, and counts the operators of `plane` that they excite and the
+/// combinations of their weights that they determine. Several are parts of one experiment, such as
+/// the segments of a file.
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for an invalid recording.
-pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<RecordingSummary> {
-    recording.check()?;
-    let series = |values: &[f64], quantity: &crate::recording::Quantity| {
-        let (min, max) = range(values);
+/// [`crate::Error::Recording`] for an invalid recording, or none.
+pub fn inspect_recording(
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
+    plane: Plane,
+) -> Result<RecordingSummary> {
+    let recordings = recordings.as_ref();
+    recordings.iter().try_for_each(Recording::check)?;
+    let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
+    let series = |of: fn(&Recording) -> &Vec<f64>, quantity: &Quantity| {
+        let (min, max) = range(of(&joined));
         let count = |band: f64| {
-            let mut turning = Turning::new(band);
-            let turns = values.iter().filter_map(|&v| turning.push(v)).count();
-            turns.saturating_sub(1) // the start is not a reversal
+            let each = recordings.iter().map(|recording| {
+                let mut turning = Turning::new(band);
+                let turns = of(recording).iter().filter_map(|&v| turning.push(v));
+                turns.count().saturating_sub(1) // the start is not a reversal
+            });
+            each.sum()
         };
         Series {
             name: quantity.name.clone(),
@@ -105,49 +115,75 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
             reversals_of_any_size: count(0.0),
         }
     };
-    let determined = determined(recording, plane)?;
+    let determined = determined(recordings, &joined.output, plane)?;
+    let mut before = 0;
+    let mut all_doubts = Vec::new();
+    for recording in recordings {
+        let found = doubts(recording)?.into_iter();
+        all_doubts.extend(found.map(|doubt| doubt.after(before)));
+        before += recording.len();
+    }
     Ok(RecordingSummary {
-        samples: recording.len(),
-        input: series(&recording.input, &recording.input_quantity),
-        output: series(&recording.output, &recording.output_quantity),
-        time: recording.time.as_deref().and_then(sampling),
+        samples: joined.len(),
+        segments: recordings.len(),
+        input: series(|recording| &recording.input, &joined.input_quantity),
+        output: series(|recording| &recording.output, &joined.output_quantity),
+        time: sampling(recordings),
         levels: plane.levels(),
         plane: (plane.min(), plane.max()),
         operators: plane.operators(),
-        excited: excited(&recording.input, plane),
+        excited: excited(recordings, plane),
         rank: determined.map(|(rank, _)| rank),
         determined: determined.map(|(_, against_noise)| against_noise),
-        doubts: doubts(recording)?,
+        doubts: all_doubts,
     })
 }
 
-/// Counts the MKP operators whose states differ between samples.
+/// Counts the MKP operators whose states differ between samples of a recording.
 ///
 /// After the first sample, from off, `γ = r_j(x)`. The state changes once some `r_j` is above this
 /// value or some `r_i` is below it.
-fn excited(input: &[f64], plane: Plane) -> usize {
-    let (low, high) = range(input);
-    let [first, low, high] = [input[0], low, high].map(|t| plane.normalise(t));
+fn excited(recordings: &[Recording], plane: Plane) -> usize {
+    let spans = recordings.iter().map(|recording| {
+        let (low, high) = range(&recording.input);
+        [recording.input[0], low, high].map(|t| plane.normalise(t))
+    });
+    let spans: Vec<[f64; 3]> = spans.collect();
     let moves = |i: usize, j: usize| {
-        let gamma = ridge(first, j);
-        ridge(high, j) > gamma || ridge(low, i) < gamma
+        spans.iter().any(|&[first, low, high]| {
+            let gamma = ridge(first, j);
+            ridge(high, j) > gamma || ridge(low, i) < gamma
+        })
     };
     (1..=plane.levels())
         .map(|j| (1..=j).filter(|&i| moves(i, j)).count())
         .sum()
 }
 
-fn sampling(time: &[f64]) -> Option<Sampling> {
-    let step = |n: usize| time[n] - time[n - 1];
-    let longest = (1..time.len()).max_by(|&a, &b| step(a).total_cmp(&step(b)))?;
-    let (median_step, gaps) = gaps(time)?;
+/// The steps of time within recordings. `None` if one has no time, or none has two samples.
+fn sampling(recordings: &[Recording]) -> Option<Sampling> {
+    let times = recordings.iter().map(|recording| recording.time.as_deref());
+    let times: Vec<&[f64]> = times.collect::<Option<_>>()?;
+    let (mut before, mut steps) = (0, Vec::new());
+    for time in &times {
+        let within = time.windows(2).enumerate();
+        steps.extend(within.map(|(n, pair)| (before + n + 1, pair[1] - pair[0])));
+        before += time.len();
+    }
+    let (longest, longest_step) = steps.iter().max_by(|a, b| a.1.total_cmp(&b.1)).copied()?;
+    let mut ordered: Vec<f64> = steps.iter().map(|(_, step)| *step).collect();
+    let middle = ordered.len() / 2;
+    let median_step = *ordered.select_nth_unstable_by(middle, f64::total_cmp).1;
     Some(Sampling {
-        start: time[0],
-        end: time[time.len() - 1],
+        start: *times.first()?.first()?,
+        end: *times.last()?.last()?,
         median_step,
-        longest_step: step(longest),
+        longest_step,
         longest_step_before_sample: longest + 1,
-        gaps: gaps.len(),
-        repeated: (1..time.len()).filter(|&n| step(n) == 0.0).count(),
+        gaps: steps
+            .iter()
+            .filter(|(_, step)| *step > GAP * median_step)
+            .count(),
+        repeated: steps.iter().filter(|(_, step)| *step == 0.0).count(),
     })
 }

@@ -13,6 +13,7 @@ use std::collections::VecDeque;
 /// A plan runs ahead: the inverse without preview, from the same start. Where its drive is at an end
 /// of its range and the target is missed, the temperature that the target needs is a bound for the
 /// samples before.
+#[derive(Clone)]
 pub(crate) struct Preview<'m> {
     plan: Inverse<'m>,
     /// The inverse without the body: it tells the temperature that a target needs.
@@ -38,6 +39,7 @@ const MARGIN: f64 = 0.01;
 /// no more: a target that no drive reaches must not cost those before it.
 const GIVEN_UP: f64 = 0.1;
 
+#[derive(Clone)]
 struct Planned {
     /// What the drive is to do.
     wanted: Wanted,

@@ -138,6 +138,20 @@ impl Doubt {
         }
     }
 
+    /// The same, of a recording that follows so many rows of others.
+    #[must_use]
+    pub(crate) fn after(mut self, before: usize) -> Self {
+        let move_on = |(first, last): &mut (usize, usize)| {
+            (*first, *last) = (*first + before, *last + before);
+        };
+        match &mut self {
+            Self::Frozen { rows, .. } => move_on(rows),
+            Self::Repeated { rows, of } => [rows, of].into_iter().for_each(move_on),
+            Self::Disagree { rows, .. } => rows.iter_mut().for_each(move_on),
+        }
+        self
+    }
+
     /// What may help.
     #[must_use]
     pub fn remedy(&self) -> Remedy {

@@ -4,8 +4,10 @@ use crate::series::clear_branches;
 use crate::series::lost::Turn;
 use crate::series::spread::usual_span;
 
-/// The median time step, and the indices of samples that follow a gap: a step of more than three
-/// times the median.
+/// A gap is a step of more than so many times the median.
+pub(crate) const GAP: f64 = 3.0;
+
+/// The median time step, and the indices of samples that follow a gap.
 pub(crate) fn gaps(time: &[f64]) -> Option<(f64, Vec<usize>)> {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
@@ -13,7 +15,7 @@ pub(crate) fn gaps(time: &[f64]) -> Option<(f64, Vec<usize>)> {
         return None;
     }
     let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let gap = |&n: &usize| time[n] - time[n - 1] > 3.0 * median;
+    let gap = |&n: &usize| time[n] - time[n - 1] > GAP * median;
     Some((median, (1..time.len()).filter(gap).collect()))
 }
 

@@ -1,12 +1,16 @@
 //! Recordings: the input and the output of one experiment, with time and load if they are known.
 //!
 //! This file defines [`Recording`] and the [`Quantity`] of each series. `gaps` finds gaps in the
-//! time. `split` parts a recording into what is fitted and what is held out.
+//! time. `split` parts a recording into what is fitted and what is held out. `joined` puts several
+//! one after the other, to be shown.
 
 mod gaps;
+mod joined;
 mod split;
 
-pub(crate) use gaps::{gaps, long_gaps, turned_in_gaps};
+pub(crate) use gaps::{GAP, gaps, long_gaps, turned_in_gaps};
+pub(crate) use joined::no_recordings;
+pub use joined::one_after_the_other;
 pub use split::{HoldOut, Split};
 
 use crate::error::{Error, Result};

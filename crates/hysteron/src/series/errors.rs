@@ -62,4 +62,31 @@ impl Errors {
             samples,
         })
     }
+
+    /// Errors over several series, whose measured values together have this range. `None` for no
+    /// series.
+    pub(crate) fn joined(
+        parts: impl IntoIterator<Item = Self>,
+        (low, high): (f64, f64),
+    ) -> Option<Self> {
+        let mut parts = parts.into_iter().peekable();
+        let first = parts.next()?;
+        if parts.peek().is_none() {
+            // Not a digit changes.
+            return Some(first);
+        }
+        let (mut squares, mut max_abs, mut samples) = (0.0, 0.0_f64, 0);
+        for part in std::iter::once(first).chain(parts) {
+            squares += part.rmse * part.rmse * part.samples as f64;
+            max_abs = max_abs.max(part.max_abs);
+            samples += part.samples;
+        }
+        let rmse = (squares / samples as f64).sqrt();
+        Some(Self {
+            rmse,
+            max_abs,
+            nrmse_percent: (high > low).then(|| 100.0 * rmse / (high - low)),
+            samples,
+        })
+    }
 }

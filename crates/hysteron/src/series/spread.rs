@@ -13,6 +13,12 @@ pub fn range(values: &[f64]) -> (f64, f64) {
         .fold(start, |(low, high), &v| (low.min(v), high.max(v)))
 }
 
+/// The range of several series together.
+pub(crate) fn range_of_all<'a>(series: impl IntoIterator<Item = &'a Vec<f64>>) -> (f64, f64) {
+    let ranges = series.into_iter().map(|values| range(values));
+    ranges.fold(range(&[]), |(low, high), (a, b)| (low.min(a), high.max(b)))
+}
+
 /// Mean and standard deviation of `values` (divided by `n`, not `n − 1`). NaN for an empty slice.
 ///
 /// ```

@@ -37,51 +37,48 @@ impl Others {
         }
     }
 
-    /// Writes `recording` together with the other columns. `recording` is the one that was read
-    /// with these columns, after [`crate::prepare()`]; `before` are its times before that. Each
-    /// series goes to its own column. If the recording was resampled, columns of numbers are
-    /// interpolated and other columns are omitted. Returns the names of those omitted.
+    /// Writes recordings together with the other columns, one after the other. `read` are the
+    /// recordings that were read with these columns, and `prepared` the same ones after
+    /// [`crate::prepare()`]. Each series goes to its own column. If a recording was resampled,
+    /// columns of numbers are interpolated and other columns are omitted. Returns the names of those
+    /// omitted.
     ///
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
     pub fn write_to(
         &self,
-        recording: &Recording,
-        before: Option<&[f64]>,
+        prepared: &[Recording],
+        read: &[Recording],
         mut table: TableWriter,
     ) -> Result<Vec<String>> {
-        recording.check()?;
-        let resampled = recording.time.as_deref() != before;
-        if !resampled && self.rows.len() != recording.len() {
-            let problem = format!(
-                "{} rows beside {} samples",
-                self.rows.len(),
-                recording.len()
-            );
+        prepared.iter().chain(read).try_for_each(Recording::check)?;
+        let rows: usize = read.iter().map(Recording::len).sum();
+        if self.rows.len() != rows || prepared.len() != read.len() {
+            let (rows, read) = (self.rows.len(), read.len());
             return Err(Error::Recording {
                 path: None,
                 row: None,
                 column: None,
-                problem,
+                problem: format!("{rows} rows and {read} recordings were read, others are written"),
             });
         }
+        let mut pairs = prepared.iter().zip(read);
+        let resampled = pairs.any(|(prepared, read)| prepared.time != read.time);
         let mut left_out = Vec::new();
         let mut columns = Vec::new();
         for (n, name) in self.header.iter().enumerate() {
-            let source = match self.series(recording, n) {
-                Some((name, series)) => Some((name, Cells::Numbers(series.to_vec()))),
-                None if !resampled => Some((name.clone(), Cells::Read(n))),
-                None => self
-                    .at(recording, before, n)
-                    .map(|cells| (name.clone(), cells)),
+            let cells = match self.series(prepared, n) {
+                Some(series) => Some(Cells::Numbers(series)),
+                None if !resampled => Some(Cells::Read(n)),
+                None => self.interpolated(prepared, read, n).map(Cells::Numbers),
             };
-            match source {
-                Some(source) => columns.push(source),
+            match cells {
+                Some(cells) => columns.push((name, cells)),
                 None => left_out.push(name.clone()),
             }
         }
         table.row(columns.iter().map(|(name, _)| name))?;
-        for n in 0..recording.len() {
+        for n in 0..prepared.iter().map(Recording::len).sum() {
             table.row(columns.iter().map(|(_, cells)| match cells {
                 Cells::Numbers(numbers) => numbers[n].to_string().into_bytes(),
                 Cells::Read(column) => self.cell(n, *column).to_vec(),
@@ -91,34 +88,49 @@ impl Others {
         Ok(left_out)
     }
 
-    /// The series of the recording that belongs in a column, and the name of that column.
-    fn series<'r>(&self, recording: &'r Recording, column: usize) -> Option<(String, &'r [f64])> {
-        let name = self.header[column].clone();
-        let place = self
-            .places
-            .iter()
-            .position(|place| *place == Some(column))?;
-        match place {
-            0 => Some((name, &recording.input)),
-            1 => Some((name, &recording.output)),
-            2 => Some((name, recording.time.as_deref()?)),
-            _ => Some((name, recording.load.as_deref()?)),
-        }
+    /// The series of the recordings that belongs in a column.
+    fn series(&self, recordings: &[Recording], column: usize) -> Option<Vec<f64>> {
+        let mut places = self.places.iter();
+        let place = places.position(|place| *place == Some(column))?;
+        let each = recordings.iter().map(|recording| match place {
+            0 => Some(&recording.input),
+            1 => Some(&recording.output),
+            2 => recording.time.as_ref(),
+            _ => recording.load.as_ref(),
+        });
+        Some(
+            each.collect::<Option<Vec<_>>>()?
+                .into_iter()
+                .flatten()
+                .copied()
+                .collect(),
+        )
     }
 
-    /// A column of numbers at the times of the recording; `None` if it is not a column of numbers.
-    fn at(&self, recording: &Recording, before: Option<&[f64]>, column: usize) -> Option<Cells> {
-        let number = |n| {
-            std::str::from_utf8(self.cell(n, column))
-                .ok()?
-                .trim()
-                .parse()
-                .ok()
-        };
-        let numbers: Option<Vec<f64>> = (0..self.rows.len()).map(number).collect();
-        let wanted = recording.time.as_deref()?;
-        let values = super::samples::interpolate(before?, &numbers?, wanted);
-        Some(Cells::Numbers(values))
+    /// A column of numbers at the times of the prepared recordings; `None` if it is not a column of
+    /// numbers.
+    fn interpolated(
+        &self,
+        prepared: &[Recording],
+        read: &[Recording],
+        column: usize,
+    ) -> Option<Vec<f64>> {
+        let (mut begin, mut all) = (0, Vec::new());
+        for (prepared, read) in prepared.iter().zip(read) {
+            let end = begin + read.len();
+            let number = |n| {
+                std::str::from_utf8(self.cell(n, column))
+                    .ok()?
+                    .trim()
+                    .parse()
+                    .ok()
+            };
+            let numbers: Option<Vec<f64>> = (begin..end).map(number).collect();
+            let (times, wanted) = (read.time.as_deref()?, prepared.time.as_deref()?);
+            all.extend(super::samples::interpolate(times, &numbers?, wanted));
+            begin = end;
+        }
+        Some(all)
     }
 
     fn cell(&self, row: usize, column: usize) -> &[u8] {

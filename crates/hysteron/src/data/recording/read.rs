@@ -63,8 +63,7 @@ impl Recording {
     ) -> Result<(Self, Vec<Note>)> {
         let ReadOptions { repair, max_memory } = options.into();
         let table = TableReader::open_recording(path, None, repair, &max_memory.into())?;
-        let (recording, _, notes) = Self::read_as(table, columns, repair, false)?;
-        Ok((recording, notes))
+        only(table, columns, repair)
     }
 
     /// As [`Recording::read`], for a table that may hold several recordings of one experiment: its
@@ -110,28 +109,30 @@ impl Recording {
         options: impl Into<ReadOptions>,
     ) -> Result<(Self, Vec<Note>)> {
         let ReadOptions { repair, max_memory } = options.into();
-        Self::from_bytes_within(name, bytes, columns, repair, &max_memory.into())
+        let held = Some(bytes.into());
+        let table = TableReader::open_recording(Path::new(name), held, repair, &max_memory.into())?;
+        only(table, columns, repair)
     }
 
-    /// As [`Recording::from_bytes`], within an account of memory that others draw from, too. What is
-    /// returned is no longer counted there.
+    /// As [`Recording::read_segments`], from the bytes of a file, within an account of memory that
+    /// others draw from, too. What is returned is no longer counted there.
     ///
     /// # Errors
     /// As [`Recording::read`].
-    pub fn from_bytes_within(
+    pub fn segments_within(
         name: &str,
         bytes: impl Into<Bytes>,
         columns: Columns<'_>,
         repair: Repair,
         memory: &Memory,
-    ) -> Result<(Self, Vec<Note>)> {
+    ) -> Result<(Vec<Segment>, Vec<Note>)> {
         let held = Some(bytes.into());
         let table = TableReader::open_recording(Path::new(name), held, repair, memory)?;
-        let (recording, _, notes) = Self::read_as(table, columns, repair, false)?;
-        Ok((recording, notes))
+        let (segments, _, notes) = read_parts(table, columns, repair, (false, true))?;
+        Ok((segments, notes))
     }
 
-    /// As [`Recording::read`], and also returns the other columns of the file.
+    /// As [`Recording::read_segments`], and also returns the other columns of the file.
     ///
     /// # Errors
     /// As [`Recording::read`].
@@ -139,34 +140,34 @@ impl Recording {
         path: &Path,
         columns: Columns<'_>,
         options: impl Into<ReadOptions>,
-    ) -> Result<(Self, Others, Vec<Note>)> {
+    ) -> Result<(Vec<Segment>, Others, Vec<Note>)> {
         let ReadOptions { repair, max_memory } = options.into();
         let table = TableReader::open_recording(path, None, repair, &max_memory.into())?;
-        let (recording, others, notes) = Self::read_as(table, columns, repair, true)?;
-        Ok((recording, others.unwrap_or_default(), notes))
+        let (segments, others, notes) = read_parts(table, columns, repair, (true, true))?;
+        Ok((segments, others.unwrap_or_default(), notes))
     }
+}
 
-    fn read_as(
-        table: TableReader,
-        columns: Columns<'_>,
-        repair: Repair,
-        with_others: bool,
-    ) -> Result<(Self, Option<Others>, Vec<Note>)> {
-        let path = table.path().to_owned();
-        let (segments, others, notes) = read_parts(table, columns, repair, (with_others, false))?;
-        match <[Segment; 1]>::try_from(segments) {
-            Ok([segment]) => Ok((segment.recording, others, notes)),
-            Err(segments) => Err(Error::Recording {
-                path: Some(path),
-                row: segments.get(1).map(|segment| segment.first),
-                column: None,
-                problem: format!(
-                    "time goes back: the table holds {} recordings, and one is needed here: write \
-                     each to a file of its own, or leave out the time",
-                    segments.len()
-                ),
-            }),
-        }
+/// The recording of a table that holds one.
+fn only(
+    table: TableReader,
+    columns: Columns<'_>,
+    repair: Repair,
+) -> Result<(Recording, Vec<Note>)> {
+    let path = table.path().to_owned();
+    let (segments, _, notes) = read_parts(table, columns, repair, (false, false))?;
+    match <[Segment; 1]>::try_from(segments) {
+        Ok([segment]) => Ok((segment.recording, notes)),
+        Err(segments) => Err(Error::Recording {
+            path: Some(path),
+            row: segments.get(1).map(|segment| segment.first),
+            column: None,
+            problem: format!(
+                "time goes back: the table holds {} recordings, and one is needed here: write \
+                 each to a file of its own, or leave out the time",
+                segments.len()
+            ),
+        }),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::data::output::TableWriter;
 use crate::error::Result;
-use crate::recording::{Origin, Recording};
+use crate::recording::{Origin, Recording, no_recordings};
 use std::path::Path;
 
 impl Recording {
@@ -20,37 +20,43 @@ impl Recording {
     /// # Errors
     /// As [`Recording::write_csv`].
     pub fn write_to(&self, table: TableWriter) -> Result<()> {
-        self.write_with(table, &[], |_| [])
+        write_all(std::slice::from_ref(self), table, &[], |_| [])
     }
+}
 
-    /// As [`Recording::write_to`], with additional columns.
-    pub(crate) fn write_with<const N: usize>(
-        &self,
-        mut table: TableWriter,
-        added: &[&str; N],
-        more: impl Fn(usize) -> [String; N],
-    ) -> Result<()> {
-        self.check()?;
-        let simulated = self.origin == Origin::Simulated;
-        let names = [
-            self.time.as_ref().map(|_| "time [s]".to_owned()),
-            Some(self.input_quantity.to_column()),
-            Some(self.output_quantity.to_column()),
-            self.load.as_ref().map(|_| self.load_quantity.to_column()),
-            simulated.then(|| "simulated".to_owned()),
-        ];
-        let added = added.map(str::to_owned);
-        table.row(names.iter().flatten().chain(&added))?;
-        for (n, (input, output)) in self.input.iter().zip(&self.output).enumerate() {
+/// Writes recordings one after the other, with additional columns. `more` gets the number of the row
+/// among all.
+pub(crate) fn write_all<const N: usize>(
+    recordings: &[Recording],
+    mut table: TableWriter,
+    added: &[&str; N],
+    more: impl Fn(usize) -> [String; N],
+) -> Result<()> {
+    recordings.iter().try_for_each(Recording::check)?;
+    let first = recordings.first().ok_or_else(no_recordings)?;
+    let simulated = first.origin == Origin::Simulated;
+    let names = [
+        first.time.as_ref().map(|_| "time [s]".to_owned()),
+        Some(first.input_quantity.to_column()),
+        Some(first.output_quantity.to_column()),
+        first.load.as_ref().map(|_| first.load_quantity.to_column()),
+        simulated.then(|| "simulated".to_owned()),
+    ];
+    let added = added.map(str::to_owned);
+    table.row(names.iter().flatten().chain(&added))?;
+    let mut row = 0;
+    for recording in recordings {
+        for (n, (input, output)) in recording.input.iter().zip(&recording.output).enumerate() {
             let cells = [
-                self.time.as_ref().map(|time| time[n].to_string()),
+                recording.time.as_ref().map(|time| time[n].to_string()),
                 Some(input.to_string()),
                 Some(output.to_string()),
-                self.load.as_ref().map(|load| load[n].to_string()),
+                recording.load.as_ref().map(|load| load[n].to_string()),
                 simulated.then(|| "1".to_owned()),
             ];
-            table.row(cells.iter().flatten().chain(&more(n)))?;
+            table.row(cells.iter().flatten().chain(&more(row)))?;
+            row += 1;
         }
-        table.finish()
     }
+    table.finish()
 }

@@ -1,7 +1,7 @@
 //! Inverts tables.
 
 use super::pipeline::{Work, through};
-use super::samples::Samples;
+use super::samples::{Next, Samples};
 use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
@@ -39,8 +39,9 @@ pub struct Invert<'a> {
 /// wanted output, from `state`. For a model with a thermal body the input is the drive to hold since
 /// the row before, and `temperature_model` follows it. A model that knows how far it errs
 /// ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the output may
-/// really be with this input, also where the status is `ok`. `out` is finished at the end.
-/// `progress` gets the bytes read.
+/// really be with this input, also where the status is `ok`. Where the clock goes back the model
+/// begins from `state` again ([`Around::repair`]). `out` is finished at the end. `progress` gets the
+/// bytes read.
 ///
 /// # Errors
 /// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
@@ -92,6 +93,12 @@ pub fn invert_table(
         model,
         samples,
         tolerance: what.tolerance,
+        begin: Begin {
+            headings: headings.clone(),
+            state: state.clone(),
+            preview: preview.clone(),
+            around_output: around_output.clone(),
+        },
         headings,
         unheaded: VecDeque::new(),
         solving: Solving {
@@ -106,11 +113,21 @@ pub fn invert_table(
     through(table, &columns, out, &added, work, progress)
 }
 
+/// Where each recording of a table begins.
+#[derive(Clone)]
+struct Begin<'m> {
+    headings: Option<Headings>,
+    state: State,
+    preview: Option<Preview<'m>>,
+    around_output: Option<AroundOutput<'m>>,
+}
+
 /// Gives each target its heading, then solves it.
 struct Inverting<'m> {
     model: &'m Model,
     samples: Samples,
     tolerance: f64,
+    begin: Begin<'m>,
     headings: Option<Headings>,
     /// The targets that wait for their heading.
     unheaded: VecDeque<Sample>,
@@ -121,7 +138,8 @@ impl Work for Inverting<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
         let plain = self.model.is_plain();
         // Without bounds, which have a state of their own.
-        if plain && self.headings.is_none() && self.solving.around_output.is_none() {
+        let bounded = self.solving.around_output.is_some();
+        if plain && self.samples.are_plain() && self.headings.is_none() && !bounded {
             let targets = &block.numbers()[self.samples.value];
             if self.solving.series(targets, self.tolerance, cells).is_ok() {
                 return Ok(());
@@ -129,7 +147,17 @@ impl Work for Inverting<'_> {
             // Nothing was solved: the rows before the fault are solved one by one.
         }
         for row in 0..block.len() {
-            let sample = self.samples.next(block, row);
+            let Next { sample, anew } = self.samples.next(block, row)?;
+            if anew {
+                // What waits belongs to the recording before.
+                self.rest(cells)?;
+                let begin = self.begin.clone();
+                self.headings = begin.headings;
+                self.solving.state = begin.state;
+                self.solving.preview = begin.preview;
+                self.solving.around_output = begin.around_output;
+                self.solving.counts.anew += 1;
+            }
             // A time or a load that cannot be is told with its row.
             if !plain {
                 let accepted = accepts(self.model, sample);
@@ -178,6 +206,7 @@ struct Solving<'m> {
 }
 
 /// Follows the inputs found, and says where the output may really be.
+#[derive(Clone)]
 struct AroundOutput<'m> {
     model: &'m Model,
     bounds: Bounds,

@@ -12,6 +12,7 @@ mod sink;
 pub use invert::{Invert, invert_table};
 pub use simulate::{Simulate, simulate_table};
 
+use crate::data::recording::Repair;
 use hysteron_core::Status;
 use serde::Serialize;
 
@@ -31,6 +32,8 @@ pub struct Counts {
     /// Of an inversion: the largest distance from the modelled output to where it may really be, in
     /// its unit ([`crate::Bounds`]); `None` where the model does not know.
     pub half_width: Option<f64>,
+    /// Rows at which the model began anew, because the clock went back.
+    pub anew: u64,
 }
 
 impl Counts {
@@ -47,11 +50,14 @@ impl Counts {
     }
 }
 
-/// The columns that a model may need besides its input or target.
+/// What a table has besides its input or target.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Around<'a> {
-    /// Column of time in seconds, for a model that depends on time.
+    /// Column of time in seconds. A model that depends on time needs it.
     pub time: Option<&'a str>,
     /// Column of the load, for a model that depends on one.
     pub load: Option<&'a str>,
+    /// What is done where the clock goes back: with [`Repair::Mend`] another recording begins, and
+    /// the model with it. All rows stay. In a gap the input is held, as the table says.
+    pub repair: Repair,
 }

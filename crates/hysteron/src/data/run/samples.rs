@@ -1,9 +1,11 @@
 //! Samples of a model from the rows of a table.
 
 use super::Around;
+use crate::data::recording::Repair;
 use crate::data::table::{Block, Column, TableReader};
 use crate::error::{Error, Result};
 use crate::model::{Model, Sample, needs_time, no_load};
+use crate::remedy::{Remedy, Setting};
 use std::path::PathBuf;
 
 /// Makes a sample of each row.
@@ -15,9 +17,19 @@ pub(super) struct Samples {
     names: Vec<String>,
     /// Which of them is the value.
     pub(super) value: usize,
+    /// Whether there is a time, and whether the model depends on it.
+    clock: bool,
     timed: bool,
     loaded: bool,
+    repair: Repair,
     before: Option<f64>,
+}
+
+/// A row as the model sees it.
+pub(super) struct Next {
+    pub(super) sample: Sample,
+    /// Whether another recording begins with it.
+    pub(super) anew: bool,
 }
 
 impl Samples {
@@ -28,10 +40,12 @@ impl Samples {
         around: Around<'_>,
     ) -> Result<Self> {
         let value = table.column(value)?;
-        let time = match (model.is_timed(), around.time) {
-            (false, _) => None,
-            (true, name) => Some(table.time_column(name.ok_or_else(needs_time)?)?),
+        let timed = model.is_timed();
+        let name = match (timed, around.time) {
+            (true, None) => return Err(needs_time()),
+            (_, name) => name,
         };
+        let time = name.map(|name| table.time_column(name)).transpose()?;
         let load = match (&model.load, around.load) {
             (Some(dependence), None) => return Err(dependence.one_is_needed()),
             (None, Some(_)) => return Err(no_load()),
@@ -44,35 +58,58 @@ impl Samples {
             names: columns.iter().map(name).collect(),
             columns,
             value: usize::from(time.is_some()),
-            timed: time.is_some(),
+            clock: time.is_some(),
+            timed,
             loaded: load.is_some(),
+            repair: around.repair,
             before: None,
         })
     }
 
+    /// Whether samples are inputs alone, so that a model without stages may run over all at once.
+    pub(super) fn are_plain(&self) -> bool {
+        !self.clock && !self.loaded
+    }
+
     /// The sample of a row, which follows the one before.
-    pub(super) fn next(&mut self, block: &Block, row: usize) -> Sample {
+    ///
+    /// # Errors
+    /// [`Error::Recording`] for a clock that goes back, if that is no other recording.
+    pub(super) fn next(&mut self, block: &Block, row: usize) -> Result<Next> {
         let at = |column: usize| block.numbers()[column][row];
-        let now = self.timed.then(|| at(0));
-        Sample {
-            input: at(self.value),
-            dt: now.map(|now| now - self.before.replace(now).unwrap_or(now)),
-            load: self.loaded.then(|| at(self.value + 1)),
+        let now = self.clock.then(|| at(0));
+        let step = now.map(|now| now - self.before.replace(now).unwrap_or(now));
+        let anew = step.is_some_and(|step| step < 0.0);
+        if let (true, Repair::Refuse, Some(now), Some(step)) = (anew, self.repair, now, step) {
+            let problem = format!("time goes back from {} to {now}", now - step);
+            let fault = self.fault_at(block, row, Some(0), problem);
+            let words = "mend the row, or let the model begin anew there with {}";
+            return Err(fault.remedied(Remedy::new(words, [Setting::on("repair")])));
         }
+        let sample = Sample {
+            input: at(self.value),
+            dt: step.filter(|_| self.timed).map(|step| step.max(0.0)),
+            load: self.loaded.then(|| at(self.value + 1)),
+        };
+        Ok(Next { sample, anew })
     }
 
     /// The error with the row and the column that it comes from.
     pub(super) fn fault(&self, block: &Block, row: usize, error: &Error) -> Error {
         let at = match error.parts().0 {
-            Error::Thermal(_) => self.timed.then_some(0),
+            Error::Thermal(_) => self.clock.then_some(0),
             Error::Fit(_) => self.loaded.then_some(self.value + 1),
             _ => Some(self.value),
         };
+        self.fault_at(block, row, at, error.to_string())
+    }
+
+    fn fault_at(&self, block: &Block, row: usize, at: Option<usize>, problem: String) -> Error {
         Error::Recording {
             path: Some(self.path.clone()),
             row: block.place(row),
             column: at.map(|at| self.names[at].clone()),
-            problem: error.to_string(),
+            problem,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Simulates tables.
 
 use super::pipeline::{Work, through};
-use super::samples::Samples;
+use super::samples::{Next, Samples};
 use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
@@ -20,7 +20,7 @@ pub struct Simulate<'a> {
 }
 
 /// Copies `table` to `out` with an additional column `output_model`: the model's output, from
-/// `state`. With a band, the columns `output_low` and `output_high` follow. `out` is finished at the
+/// `state`. Where the clock goes back it begins there again ([`Around::repair`]). With a band, the columns `output_low` and `output_high` follow. `out` is finished at the
 /// end. `progress` gets the bytes read.
 ///
 /// # Errors
@@ -46,6 +46,7 @@ pub fn simulate_table(
     };
     let work = Simulating {
         model,
+        begin: state.clone(),
         state,
         samples,
         band,
@@ -56,6 +57,8 @@ pub fn simulate_table(
 
 struct Simulating<'a> {
     model: &'a Model,
+    /// Where each recording begins.
+    begin: State,
     state: State,
     samples: Samples,
     band: Option<(&'a Band, Vec<OperatorState>)>,
@@ -64,7 +67,7 @@ struct Simulating<'a> {
 
 impl Work for Simulating<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
-        if self.model.is_plain() && self.band.is_none() {
+        if self.model.is_plain() && self.samples.are_plain() && self.band.is_none() {
             let input = &block.numbers()[self.samples.value];
             let outputs = &mut cells.numbers[0];
             outputs.resize(input.len(), 0.0);
@@ -76,7 +79,14 @@ impl Work for Simulating<'_> {
             return Ok(());
         }
         for row in 0..block.len() {
-            let sample = self.samples.next(block, row);
+            let Next { sample, anew } = self.samples.next(block, row)?;
+            if anew {
+                self.state.clone_from(&self.begin);
+                if let Some((band, states)) = &mut self.band {
+                    *states = band.states(&self.begin)?;
+                }
+                self.counts.anew += 1;
+            }
             let step = self.model.step(&mut self.state, sample);
             let step = step.map_err(|error| self.samples.fault(block, row, &error))?;
             match step.clipped {

@@ -33,6 +33,7 @@ pub use remark::Remark;
 
 pub(in crate::data) use arrow::{Batches, FILE as ARROW_FILE, caught as arrow_caught};
 pub(crate) use block::Block;
+pub(crate) use clock::is_timestamp;
 pub(crate) use labels::Label;
 
 use crate::data::recording::Places;

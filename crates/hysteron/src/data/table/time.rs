@@ -67,7 +67,10 @@ impl Time {
     pub(super) fn in_seconds(&self, number: Option<f64>) -> Option<f64> {
         match self {
             Self::Stamps(_, now) => *now,
-            Self::Epoch(unit, first) => number.map(|number| unit.in_seconds(number - first)),
+            // Seconds among milliseconds are no times of this column.
+            Self::Epoch(unit, first) => number
+                .filter(|number| EPOCH.contains(&unit.in_seconds(*number)))
+                .map(|number| unit.in_seconds(number - first)),
             Self::Unknown(unit) | Self::Numbers(unit) => number.map(|number| match unit {
                 Some(unit) => unit.in_seconds(number),
                 None => number,

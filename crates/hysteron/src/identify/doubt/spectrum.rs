@@ -65,22 +65,27 @@ impl Spectrum {
 /// a few seconds.
 const MOST_OPERATORS: usize = 1275;
 
-/// The numbers of combinations of the weights of `plane` that a recording determines: without noise,
-/// and against the noise of its output. `None` for more than 50 levels.
+/// The numbers of combinations of the weights of `plane` that recordings determine: without noise,
+/// and against the noise of their `output`, one after the other. `None` for more than 50 levels.
 ///
 /// A combination counts against the noise if its standard error is at most the weight that each
 /// operator has where all share the range of the output evenly.
-pub(crate) fn determined(recording: &Recording, plane: Plane) -> Result<Option<(usize, usize)>> {
+pub(crate) fn determined(
+    recordings: &[Recording],
+    output: &[f64],
+    plane: Plane,
+) -> Result<Option<(usize, usize)>> {
     let operators = plane.operators();
     if operators > MOST_OPERATORS {
         return Ok(None);
     }
     check_gram(operators)?;
     let form = SparseForm::new(plane, Operator::Mkp)?;
-    let gram = centred_gram(&[&recording.input], &form, Initial::Off)?;
+    let inputs: Vec<&[f64]> = recordings.iter().map(|r| r.input.as_slice()).collect();
+    let gram = centred_gram(&inputs, &form, Initial::Off)?;
     let spectrum = Spectrum::of(&gram, 0.0)?;
-    let (low, high) = range(&recording.output);
+    let (low, high) = range(output);
     let even = (high - low) / operators as f64;
-    let against_noise = spectrum.above_noise(noise(&recording.output), even);
+    let against_noise = spectrum.above_noise(noise(output), even);
     Ok(Some((spectrum.rank(), against_noise)))
 }

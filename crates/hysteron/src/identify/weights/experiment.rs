@@ -6,10 +6,9 @@ use crate::identify::options::FitOptions;
 use crate::identify::weights::of_load::OfLoad;
 use crate::model::Plane;
 use crate::model::bernstein;
-use crate::recording::Recording;
+use crate::recording::{Recording, no_recordings};
 use crate::remedy::{Remedy, Setting};
-use crate::series::range;
-use crate::series::{branch_spans, usual_tolerance};
+use crate::series::{branch_spans, range, range_of_all, usual_tolerance};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -201,16 +200,18 @@ fn check_range(
     })
 }
 
-/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is the range of the
-/// recording's input. The lowest ridge starts one step below the lowest level.
+/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is the range of the input
+/// of the recordings. The lowest ridge starts one step below the lowest level.
 ///
 /// # Errors
 /// [`Error::Core`] for an invalid number of levels; [`Error::Recording`] for a constant input.
-pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
-    check_range(std::slice::from_ref(recording), &recording.input, |r| {
-        &r.input_quantity.name
-    })?;
-    let (low, high) = range(&recording.input);
+pub fn plane_of(recordings: &(impl AsRef<[Recording]> + ?Sized), levels: usize) -> Result<Plane> {
+    let recordings = recordings.as_ref();
+    if recordings.is_empty() {
+        return Err(no_recordings());
+    }
+    let (low, high) = range_of_all(recordings.iter().map(|recording| &recording.input));
+    check_range(recordings, &[low, high], |r| &r.input_quantity.name)?;
     active_plane(low, high, levels)
 }
 

@@ -7,6 +7,11 @@ mod stamp;
 
 use stamp::{DAY, Stamp};
 
+/// Whether a text is a date, a time of day, or both.
+pub(crate) fn is_timestamp(text: &str) -> bool {
+    Stamp::read(text).is_some()
+}
+
 /// What a column of timestamps has told so far.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Clock {

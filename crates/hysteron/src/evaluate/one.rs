@@ -1,4 +1,4 @@
-//! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
+//! Forward and inverse tests of a model on one recording.
 
 use crate::error::{Error, Result};
 use crate::identify::find_start;
@@ -14,8 +14,9 @@ use hysteron_core::Solution;
 /// output has moved further than the noise.
 const STILL: f64 = 2.0 * NOISE;
 
-/// Forward and inverse tests of a model on one recording. The series of the model are empty where
-/// only errors were asked for ([`evaluate_errors`]).
+/// Forward and inverse tests of a model on a recording, or on several. The series of the model are
+/// empty where only errors were asked for ([`evaluate_errors`]). Of several recordings they stand one
+/// after the other, and errors are over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// Modelled output, one value per sample.
@@ -24,8 +25,8 @@ pub struct Evaluation {
     pub forward: Errors,
     /// Number of inputs outside the plane.
     pub clipped: usize,
-    /// For a start that was unknown: the number of samples at the beginning of the recording from
-    /// which it was estimated.
+    /// For a start that was unknown: the number of samples at the beginning of each recording from
+    /// which it was estimated, all together.
     pub estimated_from: Option<usize>,
     /// Whether this is a recording that the model was fitted to. Then the errors say how well the
     /// model fits, not how well it predicts.
@@ -67,50 +68,8 @@ pub struct InverseRun {
     pub dead_band: Option<Errors>,
 }
 
-/// Runs `model` forward over the measured input, and its inverse over the measured output. Both
-/// start where the model does ([`Model::start`]), and use time and load of the recording as far as
-/// the model needs them.
-///
-/// For a model with a thermal body, the inverse is tested behind the body: its result is compared
-/// with the temperature, because a drive that follows noise says nothing.
-///
-/// # Errors
-/// [`crate::Error::Recording`] for an invalid recording; as [`Model::run_in`].
-pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
-    evaluate_from(model, recording, Start::Fitted)
-}
-
-/// As [`evaluate`], from another start. With [`Start::Unknown`], the start is the one that explains
-/// the beginning of the recording best; [`Evaluation::estimated_from`] tells its length.
-///
-/// # Errors
-/// As [`evaluate`].
-pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
-    keeping(model, recording, start, |series| series)
-}
-
-/// As [`evaluate_from`], for the errors alone: no series of the model is kept, so that a long
-/// recording takes less memory.
-///
-/// ```
-/// use hysteron::{Model, Operator, Plane, Recording, Sign, Start, evaluate_errors, evaluate_from};
-/// let plane = Plane::new(20.0, 80.0, 3)?;
-/// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
-/// let recording = Recording::new(vec![20.0, 60.0, 30.0], vec![0.0, 3.5, 2.0])?;
-/// let errors = evaluate_errors(&model, &recording, Start::Fitted)?;
-/// assert_eq!(errors.forward, evaluate_from(&model, &recording, Start::Fitted)?.forward);
-/// assert!(errors.output_model.is_empty());
-/// # Ok::<(), hysteron::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`evaluate`].
-pub fn evaluate_errors(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
-    keeping(model, recording, start, |_| Vec::new())
-}
-
 /// The evaluation, with what `keep` keeps of each series of the model.
-fn keeping(
+pub(super) fn keeping(
     model: &Model,
     recording: &Recording,
     start: Start,
