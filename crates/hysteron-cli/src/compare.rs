@@ -4,7 +4,7 @@ use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, remedy, text};
 use hysteron::{AtomicFolder, Columns, Forward, Model, Recording};
-use hysteron_report::{ModelsReport, NamedForward};
+use hysteron_report::{NamedForward, Report, Shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -89,10 +89,12 @@ fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> R
             .map(|(name, forward)| NamedForward { name, forward })
             .collect();
         let title = format!("Models on {}", compared.data.display());
-        let report = ModelsReport {
+        let report = Report {
             title: &title,
-            recording: &compared.recording,
-            models: &models,
+            shown: Shown::Models {
+                recording: &compared.recording,
+                models: &models,
+            },
             made: typed.made(),
         };
         // A single recording has its page at the top.

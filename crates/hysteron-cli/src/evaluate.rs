@@ -4,7 +4,7 @@ use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, recording, text};
 use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording};
-use hysteron_report::Report;
+use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -34,9 +34,11 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         let typed = Typed::now()?;
         let report = Report {
             title: &title,
-            model: &model,
-            recording: &*model.behind_body(&recording)?,
-            evaluation: &evaluation,
+            shown: Shown::Evaluation {
+                model: &model,
+                recording: &*model.behind_body(&recording)?,
+                evaluation: &evaluation,
+            },
             made: typed.made(),
         };
         let paths = report.write_into(&mut folder, Path::new(""))?;

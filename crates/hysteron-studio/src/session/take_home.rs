@@ -9,9 +9,9 @@ use super::state::Session;
 use super::thinned::rows;
 use super::wish::Wish;
 use base64::Engine;
-use hysteron::{Recording, TableWriter, evaluate};
+use hysteron::{TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
-use hysteron_report::{Made, Report};
+use hysteron_report::{Made, Report, Shown};
 use serde::{Deserialize, Serialize, Serializer};
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -208,12 +208,13 @@ impl Session {
         let recording = opened.recording()?;
         let evaluation = evaluate(model, recording)?;
         let title = format!("fit {fit} on {}", opened.name);
-        let seen: &Recording = &*model.behind_body(recording)?;
         let report = Report {
             title: &title,
-            model,
-            recording: seen,
-            evaluation: &evaluation,
+            shown: Shown::Evaluation {
+                model,
+                recording: &*model.behind_body(recording)?,
+                evaluation: &evaluation,
+            },
             made: Made::default(),
         };
         let page = report.page();
