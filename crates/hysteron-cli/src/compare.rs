@@ -4,7 +4,7 @@ use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, remedy, text};
 use hysteron::{AtomicFolder, Columns, Forward, Model, Recording, one_after_the_other};
-use hysteron_report::{ModelsReport, NamedForward};
+use hysteron_report::{NamedForward, Report, Shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -90,10 +90,12 @@ fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> R
             .collect();
         let title = format!("Models on {}", compared.data.display());
         let shown = one_after_the_other(&compared.recordings).ok_or("there is no recording")?;
-        let report = ModelsReport {
+        let report = Report {
             title: &title,
-            recording: &shown,
-            models: &models,
+            shown: Shown::Models {
+                recording: &shown,
+                models: &models,
+            },
             made: typed.made(),
         };
         // A single recording has its page at the top.

@@ -4,7 +4,7 @@ use crate::made::Typed;
 use crate::terminal::{Result, print};
 use crate::{args, evaluate, text};
 use hysteron::{AtomicFolder, Errors, InverseRun};
-use hysteron_report::Report;
+use hysteron_report::{Report, Shown};
 use hysteron_sim::rig::{Experiment, Reproduction};
 use serde_json::json;
 use std::path::Path;
@@ -27,9 +27,11 @@ pub(crate) fn run(args: &args::Demo) -> Result<()> {
     let typed = Typed::now()?;
     let report = Report {
         title: "MKP model of a simulated NiTi tension spring",
-        model: &demo.model,
-        recording: &demo.prepared[1],
-        evaluation: &demo.evaluation,
+        shown: Shown::Evaluation {
+            model: &demo.model,
+            recording: &demo.prepared[1],
+            evaluation: &demo.evaluation,
+        },
         made: typed.made(),
     };
     report.write_into(&mut written, Path::new("report"))?;

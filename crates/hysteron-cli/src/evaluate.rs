@@ -6,7 +6,7 @@ use crate::{args, model, recording, text};
 use hysteron::{
     AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording, one_after_the_other,
 };
-use hysteron_report::Report;
+use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::path::Path;
@@ -43,9 +43,11 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         let typed = Typed::now()?;
         let report = Report {
             title: &title,
-            model: &model,
-            recording: &shown,
-            evaluation: &evaluation,
+            shown: Shown::Evaluation {
+                model: &model,
+                recording: &shown,
+                evaluation: &evaluation,
+            },
             made: typed.made(),
         };
         let paths = report.write_into(&mut folder, Path::new(""))?;

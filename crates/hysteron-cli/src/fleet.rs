@@ -7,7 +7,7 @@ use hysteron::{
     AtomicFolder, Columns, FleetOptions, FleetRow, Model, Norm, Progress, Strangeness, fit_fleet,
     read_fleet,
 };
-use hysteron_report::FleetReport;
+use hysteron_report::{Report, Shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -156,10 +156,12 @@ fn report(args: &args::FleetReport) -> Result<()> {
     folder.claim(["index.html"])?;
     let rows = rows(&args.models)?;
     let typed = Typed::now()?;
-    let report = FleetReport {
+    let report = Report {
         title: &format!("The fleet {}", args.models.display()),
-        rows: &rows,
-        norm: &Norm::of(&rows)?,
+        shown: Shown::Fleet {
+            rows: &rows,
+            norm: &Norm::of(&rows)?,
+        },
         made: typed.made(),
     };
     let written = report.write_into(&mut folder, Path::new(""))?;

@@ -69,6 +69,14 @@ pub enum ReportError {
         /// Values of the row.
         found: usize,
     },
+    /// A figure that a report of this kind never has.
+    #[error("there is no figure {stem:?}; there can be {}", stems.join(", "))]
+    NoFigure {
+        /// What was asked for.
+        stem: String,
+        /// The figures that there can be.
+        stems: Vec<&'static str>,
+    },
     /// A file or the directory could not be written.
     #[error(transparent)]
     Write(#[from] hysteron::Error),

@@ -1,24 +1,24 @@
 //! Figures and a self-contained HTML page from the evaluation of a model on a recording, or from
 //! runs of controllers.
 //!
-//! [`Report::write`] draws the figures that the chapter on the MKP model shows in its section 6,
-//! for any recording, each as SVG and PNG, and puts them on one page, `index.html`, that needs
-//! nothing beside it. [`Report::svg`] draws a single figure.
-//!
-//! [`TrackReport::write`] does the same for control loops: one run of each controller over the same
-//! reference. [`ModelsReport::write`] puts the residuals of several models beside each other,
-//! and [`FleetReport::write`] shows which actuators of a fleet are unlike the others.
+//! A [`Report`] draws what is [`Shown`], each figure as SVG and PNG, and puts the figures on one
+//! page, `index.html`, that needs nothing beside it: those that the chapter on the MKP model has in
+//! its section 6, for any recording; residuals of several models beside each other; runs of
+//! controllers over one reference; the actuators of a fleet that are unlike the others.
+//! [`Report::svg`] draws a single figure.
 //!
 //! The figures stay legible in grey: curves differ in line style and lightness, never in colour
 //! alone.
 
 mod clock;
+mod comparison;
 pub mod decimate;
 mod draw;
 mod error;
 mod evaluation;
+mod figure;
 mod fleet;
-mod frame;
+mod layout;
 mod linked;
 mod made;
 mod models;
@@ -27,14 +27,16 @@ mod panels;
 mod plane;
 mod png;
 mod quantity;
+mod report;
 mod residuals;
-mod stack;
+mod subject;
 mod track;
 
+pub use comparison::write_comparison;
 pub use error::ReportError;
-pub use evaluation::{Figure, Report, excitation_map};
-pub use fleet::FleetReport;
+pub use evaluation::excitation_map;
 pub use linked::plotly;
 pub use made::Made;
-pub use models::{ModelsReport, NamedForward};
-pub use track::{NamedTrace, TrackReport, TrackTable, write_comparison};
+pub use models::NamedForward;
+pub use report::{Report, Shown};
+pub use track::{NamedTrace, TrackTable, Tracking};

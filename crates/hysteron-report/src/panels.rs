@@ -1,9 +1,10 @@
-//! Panels one above the other over the same axes: one for each controller, or for each model.
+//! Where panels stand: one alone, or one above the other over the same axes, for each controller or
+//! each model.
 
 use crate::draw::axis::Axis;
-use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, y_label};
 use crate::draw::plot::Words;
+use crate::draw::shape::{Anchor, Rect};
 use crate::draw::sheet::{MARGIN, Sheet};
 use crate::draw::style::{FAINT, GUIDE, INK, LABEL, TICK};
 use crate::draw::text;
@@ -32,6 +33,18 @@ pub(crate) fn height(count: usize) -> f64 {
         5..=8 => 104.0,
         _ => 88.0,
     }
+}
+
+/// A panel `height` pixels high over the width of the sheet.
+pub(crate) fn single(sheet: &mut Sheet, x: Axis, y: Axis, height: f64) -> Panel {
+    let left = MARGIN + left_of(&y, height);
+    let area = Rect {
+        x: left,
+        y: sheet.top,
+        width: sheet.width - MARGIN - left,
+        height,
+    };
+    Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true })
 }
 
 /// Draws a panel for each of `headings`, with `below` pixels left free under each and `beside` to

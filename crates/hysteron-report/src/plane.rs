@@ -1,9 +1,10 @@
 //! The half `α ≤ β` of the plane as cells that can be drawn.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::{Canvas, Rect, Short};
+use crate::draw::canvas::Canvas;
 use crate::draw::colour::of_share;
 use crate::draw::panel::{Labels, Panel, threshold};
+use crate::draw::shape::{Rect, Short};
 use crate::draw::style::Stroke;
 use crate::quantity::Labelled;
 use hysteron::{Plane, operators};

@@ -1,7 +1,7 @@
 //! Names and units as axes and tables show them.
 
 use crate::number::significant;
-use hysteron::Quantity;
+use hysteron::{Errors, Quantity};
 
 /// A quantity that has a name, and a unit in its usual spelling.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +67,12 @@ impl Labelled {
             Some(unit) if value.is_finite() => format!("{number}\u{a0}{unit}"),
             _ => number,
         }
+    }
+
+    /// `RMSE 0.12 mm, max 0.45 mm`.
+    pub(crate) fn rmse_and_max(&self, errors: &Errors) -> String {
+        let [rmse, max] = [errors.rmse, errors.max_abs].map(|error| self.value(error));
+        format!("RMSE {rmse}, max {max}")
     }
 }
 

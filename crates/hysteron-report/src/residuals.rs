@@ -1,8 +1,8 @@
 //! Modelled minus measured output over time, over the input and by size: a panel for each model.
 
 use crate::draw::axis::{Axis, Span, time_axis};
-use crate::draw::canvas::Rect;
 use crate::draw::panel::Panel;
+use crate::draw::shape::Rect;
 use crate::draw::sheet::{Key, Sheet};
 use crate::draw::style::{FOLLOWER, REFERENCE, ZERO};
 use crate::panels::{Heading, height, stack};

@@ -9,7 +9,7 @@ mod recordings;
 
 use chromium::{Chromium, Tab, browser, keep};
 use hysteron::{Fit, Quantity, Recording, evaluate};
-use hysteron_report::{Made, Report};
+use hysteron_report::{Made, Report, Shown};
 use serde_json::json;
 use std::path::Path;
 
@@ -41,9 +41,11 @@ fn open(browser: &mut Chromium, samples: usize, folder: &Path, width: u32) -> Ta
     let model = fit.run(&recording).unwrap();
     let report = Report {
         title: "a play",
-        model: &model,
-        recording: &recording,
-        evaluation: &evaluate(&model, &recording).unwrap(),
+        shown: Shown::Evaluation {
+            model: &model,
+            recording: &recording,
+            evaluation: &evaluate(&model, &recording).unwrap(),
+        },
         made: Made::default(),
     };
     let page = report.write(folder).unwrap().remove(0);

@@ -1,9 +1,10 @@
 //! The scale beside a coloured map.
 
 use super::axis::{Axis, Span};
-use super::canvas::{Anchor, Canvas, Rect, rect_data};
+use super::canvas::Canvas;
 use super::colour::of_share;
 use super::panel::left_of;
+use super::shape::{Anchor, Rect, rect_data};
 use super::style::{AXIS, LABEL, Stroke, TICK};
 use super::text;
 

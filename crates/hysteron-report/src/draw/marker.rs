@@ -1,6 +1,7 @@
 //! Markers, many of one kind in one path.
 
-use super::canvas::{Canvas, Rect, Short, rect_data};
+use super::canvas::Canvas;
+use super::shape::{Rect, Short, rect_data};
 use super::style::Stroke;
 use std::fmt::Write;
 

@@ -8,6 +8,7 @@ pub(crate) mod colour_bar;
 pub(crate) mod marker;
 pub(crate) mod panel;
 pub(crate) mod plot;
+pub(crate) mod shape;
 pub(crate) mod sheet;
 pub(crate) mod stretches;
 pub(crate) mod style;

@@ -1,8 +1,9 @@
 //! A pair of axes and what is drawn between them.
 
 use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Rect, rect_data};
+use super::canvas::Canvas;
 use super::plot::{Line, Plot, Shown};
+use super::shape::{Anchor, Rect, rect_data};
 use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
 use super::text;
 use crate::decimate;
@@ -70,6 +71,11 @@ impl Panel {
             last.foot = Some(area.y);
         }
         Self { area, x, y, plot }.x_axis(canvas, true);
+    }
+
+    /// Where a figure ends whose last panel this is.
+    pub(crate) fn end(&self) -> f64 {
+        self.area.bottom() + BELOW + 4.0
     }
 
     /// Pixel of an x value.

@@ -1,7 +1,7 @@
 //! What a panel shows, as numbers, so that a page can draw it again where one zooms.
 
 use super::axis::Axis;
-use super::canvas::{Anchor, Rect};
+use super::shape::{Anchor, Rect};
 use super::style::Stroke;
 use hysteron::printable;
 use serde::Serialize;

@@ -1,8 +1,9 @@
 //! The sheet that carries panels: title, note and legend above, so that they never hide data.
 
-use super::canvas::{Anchor, Canvas, Rect};
+use super::canvas::Canvas;
 use super::marker::Marker;
 use super::plot::{Plot, Words};
+use super::shape::{Anchor, Rect};
 use super::style::{AXIS, FAINT, INK, LABEL, Stroke, TITLE};
 use super::text;
 use hysteron::printable;
@@ -43,7 +44,7 @@ pub(crate) struct Drawing {
 /// A figure under construction.
 pub(crate) struct Sheet {
     pub(crate) canvas: Canvas,
-    width: f64,
+    pub(crate) width: f64,
     title: String,
     /// What lines and filled areas are, as the legend says.
     lines: Vec<(Stroke, String)>,
@@ -135,7 +136,7 @@ impl Sheet {
                 };
                 self.canvas.rect(area, fill);
                 self.canvas.path(
-                    &super::canvas::rect_data(area),
+                    &super::shape::rect_data(area),
                     None,
                     Some(&Stroke { width: 0.5, ..AXIS }),
                 );

@@ -1,82 +1,97 @@
 //! The page of an evaluation.
 
-use crate::draw::sheet::Drawing;
-use crate::evaluation::figure::Figure;
-use crate::evaluation::figures::classes_counted;
+use crate::evaluation::figures::excitation_map::counts;
+use crate::evaluation::figures::{
+    close_up, cross_validation, discrepancy, evolution, excitation_map, input_time, load_loops,
+    load_measured, load_shift, loops, output_time, residuals, standard_errors, weights_map,
+    weights_plane,
+};
 use crate::evaluation::view::View;
-use crate::frame;
 use crate::made;
-use crate::number::percent;
-use crate::number::{count, significant};
-use crate::stack::Figures;
+use crate::number::{count, percent, significant};
+use crate::subject::{Section, Simulated, Subject};
 use hysteron::{Confidence, Errors};
 use maud::{Markup, html};
 
-/// The sections of the page and their figures; figures in one group stand side by side where there
-/// is room.
-const SECTIONS: [(&str, &[&[Figure]]); 5] = [
-    (
-        "The model",
-        &[
-            &[Figure::WeightsPlane, Figure::WeightsMap],
-            &[Figure::LoadShift, Figure::LoadLoops],
-        ],
-    ),
-    (
-        "Confidence: what the data said",
-        &[
-            &[Figure::Excitation, Figure::StandardErrors],
-            &[Figure::CrossValidation],
-        ],
-    ),
-    (
-        "Forward: output from input",
-        &[
-            &[Figure::OutputTime],
-            &[Figure::Loops],
-            &[Figure::LoadMeasured],
-            &[Figure::OutputDiscrepancy],
-            &[Figure::OutputResiduals],
-            &[Figure::OutputHistogram],
-        ],
-    ),
-    (
-        "Inverse: input from output",
-        &[
-            &[Figure::InputTime],
-            &[Figure::InputDiscrepancy],
-            &[Figure::DeadBand],
-        ],
-    ),
-    ("Memory: the plane", &[&[Figure::PlaneEvolution]]),
-];
+impl Subject for View<'_> {
+    fn sections() -> Vec<Section<Self>> {
+        let model = vec![
+            vec![weights_plane::figure(), weights_map::figure()],
+            vec![load_shift::figure(), load_loops::figure()],
+        ];
+        let confidence = vec![
+            vec![excitation_map::figure(), standard_errors::figure()],
+            vec![cross_validation::figure()],
+        ];
+        let forward = vec![
+            output_time::figure(),
+            loops::figure(),
+            load_measured::figure(),
+            discrepancy::output(),
+            residuals::over_input(),
+            residuals::histogram(),
+        ];
+        let inverse = vec![
+            input_time::figure(),
+            discrepancy::input(),
+            close_up::figure(),
+        ];
+        vec![
+            Section::new("The model", model),
+            Section::new("Confidence: what the data said", confidence),
+            Section::column("Forward: output from input", forward),
+            Section {
+                notes: about_inverse,
+                ..Section::column("Inverse: input from output", inverse)
+            },
+            Section::column("Memory: the plane", vec![evolution::figure()]),
+        ]
+    }
 
-/// The page around the figures in `drawn`.
-pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
-    let lead = html! {
-        "A hysteresis model of " (view.output.name) " over " (view.input.name)
-        ", tested on a recording of both."
-    };
-    let simulated =
-        "Simulated: this recording comes from a simulated plant, not from a measurement.";
-    let body = html! {
-        (facts(view))
-        (errors(view))
-        @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
-        p.beside {
-            "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of \
-             SMA actuators”, which introduces the MKP model; its figure numbers are given with \
-             each caption."
+    fn simulated(&self) -> Option<Simulated> {
+        self.is_simulated().then_some(Simulated {
+            page: Simulated::RECORDING,
+            caption: "Simulated recording. ",
+        })
+    }
+
+    fn lead(&self) -> Markup {
+        html! {
+            "A hysteresis model of " (self.output.name) " over " (self.input.name)
+            ", tested on a recording of both."
         }
-    };
-    frame::html(
-        view.heading,
-        lead,
-        view.simulated().then_some(simulated),
-        body,
-        view.made,
-        view.scripts(drawn),
-    )
+    }
+
+    fn above(&self) -> Markup {
+        html! { (facts(self)) (errors(self)) }
+    }
+
+    fn below(&self) -> Markup {
+        html! {
+            p.beside {
+                "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling \
+                 of SMA actuators”, which introduces the MKP model; its figure numbers are given \
+                 with each caption."
+            }
+        }
+    }
+}
+
+/// Why figures of the inverse are missing.
+fn about_inverse(view: &View<'_>) -> [Markup; 2] {
+    let (mut above, mut below) = (html! {}, html! {});
+    match &view.evaluation.inverse {
+        Err(reason) => above = html! { p { "No inverse test: " (reason) } },
+        Ok(inverse) if !inverse.moving.contains(&false) => {
+            below = html! {
+                p {
+                    "The output never rests while the input travels: there is no dead band to show."
+                }
+            }
+        }
+        Ok(_) => {}
+    }
+    [above, below]
 }
 
 fn facts(view: &View<'_>) -> Markup {
@@ -119,7 +134,7 @@ fn facts(view: &View<'_>) -> Markup {
 /// What the data fitted said of the weights, a row each.
 fn certainty(confidence: &Confidence, view: &View<'_>) -> Markup {
     html! {
-        tr { th scope="row" { "Operators" } td { (classes_counted(&confidence.excitation)) } }
+        tr { th scope="row" { "Operators" } td { (counts(&confidence.excitation)) } }
         tr {
             th scope="row" { "Rank" }
             td {
@@ -166,7 +181,7 @@ fn errors(view: &View<'_>) -> Markup {
     html! {
         div.wide { table {
             thead { tr {
-                th scope="col" { "Discrepancy" @if view.simulated() { " (simulated)" } }
+                th scope="col" { "Discrepancy" @if view.is_simulated() { " (simulated)" } }
                 th scope="col" { "RMSE" } th scope="col" { "max" } th scope="col" { "unit" }
                 th scope="col" { "RMSE of range" } th scope="col" { "samples" }
             } }
@@ -184,61 +199,4 @@ fn errors(view: &View<'_>) -> Markup {
             }
         } }
     }
-}
-
-fn section(
-    name: &str,
-    groups: &[&[Figure]],
-    view: &View<'_>,
-    drawn: &[(Figure, Drawing)],
-) -> Markup {
-    let inverse = groups
-        .iter()
-        .copied()
-        .flatten()
-        .any(|figure| figure.needs_inverse());
-    let no_dead_band = view
-        .inverse()
-        .is_some_and(|inverse| !inverse.moving.contains(&false));
-    let none = || {
-        groups
-            .iter()
-            .copied()
-            .flatten()
-            .all(|f| drawn.iter().all(|(d, _)| d != f))
-    };
-    if !inverse && none() {
-        return html! {};
-    }
-    html! {
-        section {
-            h2 { (name) }
-            @if inverse {
-                @if let Err(reason) = &view.evaluation.inverse {
-                    p { "No inverse test: " (reason) }
-                }
-            }
-            @for group in groups {
-                @if let &&[figure] = group {
-                    (picture(figure, view, drawn))
-                } @else {
-                    div.pair { @for &figure in *group { (picture(figure, view, drawn)) } }
-                }
-            }
-            @if inverse && no_dead_band {
-                p {
-                    "The output never rests while the input travels: there is no dead band to show."
-                }
-            }
-        }
-    }
-}
-
-fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, Drawing)]) -> Markup {
-    let beside = html! {
-        @if let Some(number) = figure.chapter_number() {
-            " " span.beside { "Beside Fig. " (number) " of the chapter." }
-        }
-    };
-    view.picture(figure, drawn, beside)
 }

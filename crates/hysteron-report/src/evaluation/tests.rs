@@ -2,33 +2,36 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::evaluation::fixture::{Fixture, sma};
-use crate::evaluation::{Figure, Report};
 use crate::made::Made;
+use crate::report::{Report, Shown};
 use hysteron::{Origin, Quantity, Recording};
 
 fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
     Report {
         title,
-        model: &fixture.model,
-        recording: &fixture.recording,
-        evaluation: &fixture.evaluation,
+        shown: Shown::Evaluation {
+            model: &fixture.model,
+            recording: &fixture.recording,
+            evaluation: &fixture.evaluation,
+        },
         made: Made::default(),
     }
 }
 
-/// All figures. Each must be well-formed, without NaN or infinite numbers.
-fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
-    let draw = |figure| Some((figure, report(fixture, "").svg(figure).unwrap()?));
-    let drawn: Vec<(Figure, String)> = Figure::ALL.into_iter().filter_map(draw).collect();
-    for (figure, svg) in &drawn {
+/// All figures, by their stems. Each must be well-formed, without NaN or infinite numbers.
+fn figures(fixture: &Fixture) -> Vec<(&'static str, String)> {
+    let report = report(fixture, "");
+    let draw = |stem| Some((stem, report.svg(stem).unwrap()?));
+    let drawn: Vec<_> = stems().into_iter().filter_map(draw).collect();
+    for (stem, svg) in &drawn {
         let document = roxmltree::Document::parse(svg).unwrap();
-        assert!(document.root_element().has_tag_name("svg"), "{figure}");
+        assert!(document.root_element().has_tag_name("svg"), "{stem}");
         for node in document.descendants() {
             for attribute in node.attributes() {
                 let value = attribute.value();
                 assert!(
                     !value.contains("NaN") && !value.contains("inf"),
-                    "{figure}: {value}"
+                    "{stem}: {value}"
                 );
             }
         }
@@ -36,51 +39,43 @@ fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
     drawn
 }
 
-/// Figures that need a model to say more than its weights.
-const OF_FITS: [Figure; 6] = [
-    Figure::LoadShift,
-    Figure::LoadMeasured,
-    Figure::LoadLoops,
-    Figure::Excitation,
-    Figure::StandardErrors,
-    Figure::CrossValidation,
-];
+fn stems() -> Vec<&'static str> {
+    report(&sma(10), "").stems().unwrap()
+}
 
 /// Figures of a model that depends on a load.
-const OF_LOADS: [Figure; 3] = [Figure::LoadShift, Figure::LoadMeasured, Figure::LoadLoops];
+const OF_LOADS: [&str; 3] = ["load-shift", "load-measured", "fig02-load-loops"];
 
-/// Figures of any model.
-const PLAIN: usize = Figure::ALL.len() - OF_FITS.len();
+/// Figures of a model that tells how it was fitted.
+const OF_FITS: [&str; 3] = ["excitation", "standard-errors", "cross-validation"];
+
+/// The number of figures of any model.
+fn plain() -> usize {
+    stems().len() - OF_FITS.len() - OF_LOADS.len()
+}
 
 #[test]
 fn a_model_that_says_more_has_more_figures() {
     let mut fixture = sma(600);
-    let drawn = |fixture: &Fixture| -> Vec<Figure> {
-        figures(fixture)
-            .into_iter()
-            .map(|(figure, _)| figure)
-            .collect()
+    let drawn = |fixture: &Fixture| -> Vec<&str> {
+        let drawn = figures(fixture).into_iter();
+        drawn.map(|(stem, _)| stem).collect()
     };
-    assert!(
-        OF_FITS
-            .iter()
-            .all(|figure| !drawn(&fixture).contains(figure))
-    );
+    let mut expected = stems();
+    expected.retain(|stem| !OF_LOADS.contains(stem));
+    let plain = expected.iter().filter(|stem| !OF_FITS.contains(stem));
+    assert!(drawn(&fixture).iter().eq(plain));
     fixture.identify();
-    let expected: Vec<Figure> = Figure::ALL
-        .into_iter()
-        .filter(|figure| !OF_LOADS.contains(figure))
-        .collect();
     assert_eq!(drawn(&fixture), expected);
     let load = (0..600).map(|n| 6.0 + 0.01 * f64::from(n % 5));
     fixture.recording.load = Some(load.collect());
     fixture.identify();
     let found = drawn(&fixture);
-    assert!(found.contains(&Figure::LoadLoops));
+    assert!(found.contains(&"fig02-load-loops"));
     // A load that changes with every sample has no loops of its own.
-    assert!(!found.contains(&Figure::LoadMeasured));
+    assert!(!found.contains(&"load-measured"));
     // There is an inverse under a load that changes, too.
-    assert!(found.contains(&Figure::InputTime));
+    assert!(found.contains(&"fig13-input-time"));
 }
 
 /// A model with a shift on a recording at these loads, one after the other, of 200 samples each.
@@ -104,14 +99,23 @@ fn loaded(loads: &[f64]) -> Fixture {
     fixture
 }
 
-fn figure(fixture: &Fixture, figure: Figure) -> Option<String> {
-    report(fixture, "a wire").svg(figure).unwrap()
+fn figure(fixture: &Fixture, stem: &str) -> Option<String> {
+    report(fixture, "a wire").svg(stem).unwrap()
+}
+
+#[test]
+fn a_figure_that_is_never_there_is_an_error_that_names_those_that_are() {
+    let error = report(&sma(10), "").svg("fig99").unwrap_err().to_string();
+    assert!(
+        error.contains("fig99") && error.contains("fig11-loops"),
+        "{error}"
+    );
 }
 
 #[test]
 fn a_shift_is_drawn_with_its_slope_in_the_units_of_the_field() {
     let fixture = loaded(&[50.0, 150.0]);
-    let shift = figure(&fixture, Figure::LoadShift).unwrap();
+    let shift = figure(&fixture, "load-shift").unwrap();
     assert!(shift.contains("shift s [K]") && shift.contains("stress [MPa]"));
     let folder = tempfile::tempdir().unwrap();
     let written = report(&fixture, "a wire").write(folder.path()).unwrap();
@@ -122,12 +126,12 @@ fn a_shift_is_drawn_with_its_slope_in_the_units_of_the_field() {
         "{page}"
     );
     assert!(page.contains("0.100 to 0.200 K/MPa"));
-    assert_eq!(figure(&sma(200), Figure::LoadShift), None);
+    assert_eq!(figure(&sma(200), "load-shift"), None);
 }
 
 #[test]
 fn loops_of_each_load_are_drawn_where_it_rests() {
-    let measured = |loads: &[f64]| figure(&loaded(loads), Figure::LoadMeasured);
+    let measured = |loads: &[f64]| figure(&loaded(loads), "load-measured");
     // Loads of the fit are 0, 100 and 200; measured ones waver.
     let two = measured(&[3.0, 196.0, 1.0]).unwrap();
     assert!(two.contains("measured 0") && two.contains("measured 200"));
@@ -137,7 +141,7 @@ fn loops_of_each_load_are_drawn_where_it_rests() {
     let mut moves = loaded(&[0.0]);
     moves.recording.load = Some((0..200).map(f64::from).collect());
     moves.evaluate();
-    assert_eq!(figure(&moves, Figure::LoadMeasured), None);
+    assert_eq!(figure(&moves, "load-measured"), None);
 }
 
 #[test]
@@ -145,7 +149,7 @@ fn a_report_has_every_figure_twice_and_one_page() {
     let fixture = sma(2000);
     let folder = tempfile::tempdir().unwrap();
     let written = report(&fixture, "a spring").write(folder.path()).unwrap();
-    assert_eq!(written.len(), 1 + 2 * PLAIN);
+    assert_eq!(written.len(), 1 + 2 * plain());
     for path in &written {
         assert!(
             std::fs::metadata(path).unwrap().len() > 1000,
@@ -160,7 +164,7 @@ fn a_report_has_every_figure_twice_and_one_page() {
     );
     let page = std::fs::read_to_string(&written[0]).unwrap();
     assert_eq!(page, report(&fixture, "a spring").page().unwrap());
-    assert_eq!(page.matches("<svg").count(), PLAIN);
+    assert_eq!(page.matches("<svg").count(), plain());
     for load in ["src=\"http", "href=\"http", "url(http", "@import", "<link"] {
         assert!(!page.contains(load), "{load}");
     }
@@ -183,7 +187,7 @@ fn a_report_has_every_figure_twice_and_one_page() {
 fn simulated_recordings_say_so_in_every_figure() {
     let mut fixture = sma(500);
     let says = |fixture: &Fixture| {
-        let says = |(_, svg): &(Figure, String)| svg.contains("simulated");
+        let says = |(_, svg): &(&str, String)| svg.contains("simulated");
         figures(fixture).iter().map(says).collect::<Vec<_>>()
     };
     assert!(says(&fixture).iter().all(|said| !said));
@@ -196,7 +200,7 @@ fn names_are_escaped() {
     let mut fixture = sma(200);
     fixture.recording.output_quantity = Quantity::with_unit("<b>lift & \"drop\"</b>", "µm");
     fixture.recording.input_quantity = Quantity::named("T < 80 & > 20");
-    assert_eq!(figures(&fixture).len(), PLAIN);
+    assert_eq!(figures(&fixture).len(), plain());
     let folder = tempfile::tempdir().unwrap();
     report(&fixture, "<i>&").write(folder.path()).unwrap();
     let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();

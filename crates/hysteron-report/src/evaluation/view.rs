@@ -1,25 +1,18 @@
-//! What every figure and caption reads: the report's parts in the words and units that are shown.
+//! What every figure reads: the parts of an evaluation in the words and units that are shown.
 
 use crate::clock::clock;
-use crate::draw::sheet::Drawing;
-use crate::evaluation::figure::Figure;
-use crate::evaluation::report::Report;
+use crate::error::ReportError;
 use crate::evaluation::source::Source;
-use crate::evaluation::{captions, figures, page};
-use crate::made::Made;
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
-use hysteron::{Origin, Recording};
+use hysteron::{Model, Origin, Recording};
 use std::borrow::Cow;
 
-/// A report, ready to be drawn.
+/// An evaluation, ready to be drawn.
 pub(crate) struct View<'a> {
-    pub(crate) heading: &'a str,
     pub(crate) recording: &'a Recording,
     pub(crate) evaluation: &'a Evaluation,
     pub(crate) source: Source<'a>,
-    pub(crate) made: Made<'a>,
     pub(crate) input: Labelled,
     pub(crate) output: Labelled,
     /// Seconds, or sample numbers where the recording has no time.
@@ -28,27 +21,47 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    pub(crate) fn new(report: &Report<'a>) -> Self {
-        let &Report {
-            title: heading,
-            model,
-            recording,
-            evaluation,
-            made,
-        } = report;
+    /// The parts, once they fit together.
+    pub(crate) fn new(
+        model: &'a Model,
+        recording: &'a Recording,
+        evaluation: &'a Evaluation,
+    ) -> Result<Self, ReportError> {
+        let expected = recording.input.len();
+        let mut lengths = vec![
+            ("recording.output", recording.output.len()),
+            ("output_model", evaluation.output_model.len()),
+        ];
+        if let Some(band) = &evaluation.band {
+            lengths.push(("band.half_width", band.half_width.len()));
+        }
+        if let Ok(inverse) = &evaluation.inverse {
+            let [hold, anticipate] =
+                [&inverse.hold, &inverse.anticipate].map(|run| run.input_model.len());
+            lengths.extend([
+                ("inverse.moving", inverse.moving.len()),
+                ("inverse.hold.input_model", hold),
+                ("inverse.anticipate.input_model", anticipate),
+            ]);
+        }
+        if let Some((series, found)) = lengths.into_iter().find(|&(_, found)| found != expected) {
+            return Err(ReportError::Length {
+                series,
+                expected,
+                found,
+            });
+        }
         let source = Source::new(model);
         let (time, time_label) = clock(recording);
-        Self {
-            heading,
+        Ok(Self {
             recording,
             evaluation,
             source,
-            made,
             input: Labelled::first([&recording.input_quantity, source.input()], "input"),
             output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             time,
             time_label,
-        }
+        })
     }
 
     pub(crate) fn inverse(&self) -> Option<&'a InverseEvaluation> {
@@ -76,56 +89,15 @@ impl<'a> View<'a> {
         Some([lower, upper])
     }
 
-    /// What the recorded curves are called.
-    pub(crate) fn recorded(&self) -> &'static str {
-        if self.simulated() {
-            "simulated plant"
-        } else {
-            "measured"
-        }
-    }
-}
-
-impl Figures for View<'_> {
-    type Figure = Figure;
-    const ALL: &'static [Figure] = &Figure::ALL;
-
-    fn stem(figure: Figure) -> &'static str {
-        figure.stem()
-    }
-
-    fn simulated(&self) -> bool {
+    pub(crate) fn is_simulated(&self) -> bool {
         self.recording.origin == Origin::Simulated
     }
 
-    fn title(&self, figure: Figure) -> String {
-        captions::title(figure, self)
-    }
-
-    fn caption(&self, figure: Figure) -> String {
-        captions::caption(figure, self)
-    }
-
-    fn draw(&self, figure: Figure) -> Option<Drawing> {
-        figures::svg(figure, self)
-    }
-
-    fn is_linked(figure: Figure) -> bool {
-        matches!(
-            figure,
-            Figure::OutputTime
-                | Figure::Loops
-                | Figure::LoadLoops
-                | Figure::LoadMeasured
-                | Figure::OutputDiscrepancy
-                | Figure::OutputResiduals
-                | Figure::InputTime
-                | Figure::InputDiscrepancy
-                | Figure::DeadBand
-        )
-    }
-
-    fn page(&self, drawn: &[(Figure, Drawing)]) -> String {
-        page::html(self, drawn)
+    /// What the recorded curves are called.
+    pub(crate) fn recorded(&self) -> &'static str {
+        match self.is_simulated() {
+            true => "simulated plant",
+            false => "measured",
+        }
     }
 }

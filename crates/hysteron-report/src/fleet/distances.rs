@@ -1,21 +1,43 @@
 //! The distance of each actuator from the others, the strangest first.
 
-use super::view::{Figure, View};
+use super::view::View;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, MARGIN};
+use crate::draw::sheet::Sheet;
 use crate::draw::style::{FOLLOWER, GUIDE};
-use crate::panels::WIDTH;
+use crate::figure::Figure;
+use crate::panels::{WIDTH, single};
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 
 const HEIGHT: f64 = 240.0;
 /// Distances beyond so many limits are drawn at the edge: one broken actuator would flatten all.
 const MOST: f64 = 8.0;
 
-pub(super) fn svg(view: &View<'_>) -> Drawing {
-    let mut sheet = view.sheet(Figure::Distances, WIDTH);
+pub(super) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fleet-distances",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let limit = view.ordered[0].1.limit;
+    Some([
+        "How far each actuator is from the others".into(),
+        format!(
+            "Robust distance of stroke, width, slope, position and error, the strangest first. Of \
+             normally distributed actuators one in a thousand lies above the dashed limit of \
+             {limit:.2}; here {} of {} do.",
+            view.outliers(),
+            view.ordered.len()
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let limit = view.ordered[0].1.limit;
     let distances: Vec<f64> = view
         .ordered
@@ -36,16 +58,8 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
     );
     let highest = Span::of(&distances).with(limit).with(0.0);
     let y = Axis::new(&plain("distance"), highest.padded(0.05).from(0.0));
-    let left = MARGIN + left_of(&y, HEIGHT);
-    let area = Rect {
-        x: left,
-        y: sheet.top,
-        width: WIDTH - MARGIN - left,
-        height: HEIGHT,
-    };
-    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    let panel = single(sheet, x, y, HEIGHT);
     panel.level(&mut sheet.canvas, limit, &GUIDE);
     panel.curve(&mut sheet.canvas, &places, &distances, &FOLLOWER);
-    let height = area.bottom() + BELOW + 4.0;
-    view.finish(Figure::Distances, sheet, height)
+    Some(panel.end())
 }

@@ -1,18 +1,18 @@
 //! How errors and main numbers of the loops are distributed, a panel for each.
 
-use super::view::{Figure, View};
+use super::view::View;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, MARGIN};
+use crate::draw::shape::Rect;
+use crate::draw::sheet::{MARGIN, Sheet};
 use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
+use crate::figure::Figure;
 use crate::panels::WIDTH;
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 use hysteron::FleetRow;
 
 /// Classes of each histogram.
-pub(super) const CLASSES: usize = 30;
+const CLASSES: usize = 30;
 const HEIGHT: f64 = 130.0;
 const GAP: f64 = 18.0;
 /// The classes reach so many robust deviations from the median at most.
@@ -21,8 +21,29 @@ const REACH: f64 = 8.0;
 /// A number of each actuator: its name, and its value.
 type Number = (Labelled, fn(&FleetRow) -> Option<f64>);
 
-pub(super) fn svg(view: &View<'_>) -> Drawing {
-    let mut sheet = view.sheet(Figure::Distributions, WIDTH);
+pub(super) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fleet-distributions",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(_: &View<'_>) -> Option<[String; 2]> {
+    Some([
+        "Errors and loops of the fleet".into(),
+        format!(
+            "Number of actuators in each of {CLASSES} classes of equal width. Dashed: the median. \
+             Marks at the foot: actuators unlike the others. Classes at both ends hold what lies \
+             beyond them."
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let slope = match (&view.output.unit, &view.input.unit) {
         (Some(output), Some(input)) => Some(format!("{output}/{input}")),
         _ => None,
@@ -90,9 +111,9 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
             let foot = area.bottom();
             sheet.canvas.line([at, foot - 7.0], [at, foot], &BEYOND);
         }
-        bottom = area.bottom() + BELOW + 4.0;
+        bottom = panel.end();
     }
-    view.finish(Figure::Distributions, sheet, bottom)
+    Some(bottom)
 }
 
 /// A number of all actuators, in classes.

@@ -1,13 +1,13 @@
 //! The loops of the strangest actuators, each over that of the most usual one.
 
-use super::view::{Figure, View};
+use super::view::View;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
+use crate::draw::shape::Rect;
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{FOLLOWER, REFERENCE};
+use crate::figure::Figure;
 use crate::panels::{HEADING, Heading, WIDTH, head};
-use crate::stack::Figures;
 use hysteron::Model;
 
 const HEIGHT: f64 = 150.0;
@@ -15,12 +15,34 @@ const COLUMNS: usize = 2;
 const GAP: f64 = 18.0;
 
 /// Number of loops drawn.
-pub(super) fn count(view: &View<'_>) -> usize {
+fn count(view: &View<'_>) -> usize {
     View::DRAWN.min(view.ordered.len() - 1)
 }
 
-/// `None` for a fleet of one.
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
+pub(super) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fleet-loops",
+        chapter: None,
+        width: WIDTH,
+        is_linked: true,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    Some([
+        "The strangest loops beside the most usual one".into(),
+        format!(
+            "Major loops of the {} actuators with the largest distances, each over that of the \
+             most usual one, {} (pale).",
+            count(view),
+            view.usual().id
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let strangest = &view.ordered[..count(view)];
     let usual = major_loop(&view.usual().model)?;
     let loops: Vec<[Vec<f64>; 2]> = strangest
@@ -30,7 +52,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     if loops.is_empty() {
         return None;
     }
-    let mut sheet = view.sheet(Figure::Loops, WIDTH);
     sheet.legend(&[
         Key::Line(FOLLOWER, "the actuator".into()),
         Key::Line(
@@ -60,14 +81,14 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
                 strange.distance
             ),
         };
-        head(&mut sheet, &heading, area);
+        head(sheet, &heading, area);
         let labels = Labels { x: true, y: true };
         let panel = Panel::draw(&mut sheet.canvas, area, x.clone(), y.clone(), labels);
         panel.loops(&mut sheet.canvas, &usual[0], &usual[1], &REFERENCE);
         panel.loops(&mut sheet.canvas, &path[0], &path[1], &FOLLOWER);
-        bottom = area.bottom() + BELOW + 4.0;
+        bottom = panel.end();
     }
-    Some(view.finish(Figure::Loops, sheet, bottom))
+    Some(bottom)
 }
 
 /// Inputs and outputs once up and down the plane.

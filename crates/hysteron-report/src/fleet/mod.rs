@@ -1,14 +1,12 @@
-//! A fleet of actuators: how their errors and loops are distributed, and which are unlike the
-//! others.
+//! The report of a fleet of actuators.
 
 mod distances;
 mod distributions;
 mod loops;
 mod page;
-mod report;
 mod view;
 
-pub use report::FleetReport;
+pub(crate) use view::View;
 
 #[cfg(test)]
 mod tests;

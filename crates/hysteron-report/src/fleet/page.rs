@@ -1,36 +1,46 @@
 //! The page of a fleet.
 
-use super::view::{Figure, View};
-use crate::draw::sheet::Drawing;
-use crate::frame;
+use super::view::View;
+use super::{distances, distributions, loops};
 use crate::number::{count, percent, significant};
-use crate::stack::Figures;
+use crate::subject::{Section, Simulated, Subject};
 use maud::{Markup, html};
 
 /// Actuators in the table, at most.
 const LISTED: usize = 50;
 
-/// The page around the figures in `drawn`.
-pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
-    let lead = html! {
-        (count(view.ordered.len())) " actuators: " (view.output.name) " over " (view.input.name)
-        ". " (count(view.outliers())) " are unlike the others."
-    };
-    let simulated = "Simulated: recordings of this fleet come from a simulated plant, not from a \
-                     measurement.";
-    let body = html! {
-        @for figure in View::ALL { (view.picture(*figure, drawn, html! {})) }
-        (table(view))
-    };
-    let simulated = view.simulated().then_some(simulated);
-    frame::html(
-        view.report.title,
-        lead,
-        simulated,
-        body,
-        view.report.made,
-        view.scripts(drawn),
-    )
+impl Subject for View<'_> {
+    fn sections() -> Vec<Section<Self>> {
+        let figures = vec![
+            distributions::figure(),
+            distances::figure(),
+            loops::figure(),
+        ];
+        vec![Section::column("", figures)]
+    }
+
+    fn simulated(&self) -> Option<Simulated> {
+        self.is_simulated().then_some(Simulated {
+            page: "Simulated: recordings of this fleet come from a simulated plant, not from a \
+                   measurement.",
+            caption: "",
+        })
+    }
+
+    fn lead(&self) -> Markup {
+        html! {
+            (count(self.ordered.len())) " actuators: " (self.output.name) " over "
+            (self.input.name) ". " (count(self.outliers())) " are unlike the others."
+        }
+    }
+
+    fn above(&self) -> Markup {
+        html! {}
+    }
+
+    fn below(&self) -> Markup {
+        table(self)
+    }
 }
 
 /// The outliers, or the ten strangest where there are fewer.

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
-use super::FleetReport;
 use crate::made::Made;
+use crate::report::{Report, Shown};
 use hysteron::{FleetRow, Model, Norm, Operator, Plane, Sign, operators};
 
 /// A loop with the weight around one operator; `n` varies it a little.
@@ -35,10 +35,12 @@ fn the_strangest_come_first_and_have_their_loops() {
     let mut rows: Vec<FleetRow> = (0..60).map(|n| row(n, 3.0)).collect();
     rows[17] = row(17, 6.0);
     let norm = Norm::of(&rows).unwrap();
-    let report = FleetReport {
+    let report = Report {
         title: "line",
-        rows: &rows,
-        norm: &norm,
+        shown: Shown::Fleet {
+            rows: &rows,
+            norm: &norm,
+        },
         made: Made::default(),
     };
     let folder = tempfile::tempdir().unwrap();
@@ -53,8 +55,11 @@ fn the_strangest_come_first_and_have_their_loops() {
         "{first}"
     );
     assert!(page.matches("deviations").count() >= 10);
-    let none = FleetReport {
-        rows: &[],
+    let none = Report {
+        shown: Shown::Fleet {
+            rows: &[],
+            norm: &norm,
+        },
         ..report
     };
     assert!(none.write(folder.path().join("none").as_path()).is_err());

@@ -1,11 +1,11 @@
-//! Models beside each other on one recording: residuals over time, over the input, and as
-//! histograms.
+//! The report of models beside each other on one recording.
 
 mod page;
-mod report;
+mod residuals;
 mod view;
 
-pub use report::{ModelsReport, NamedForward};
+pub use view::NamedForward;
+pub(crate) use view::View;
 
 #[cfg(test)]
 mod tests;

@@ -1,37 +1,47 @@
 //! The page of models beside each other.
 
-use super::view::{Figure, View};
-use crate::draw::sheet::Drawing;
-use crate::frame;
+use super::residuals;
+use super::view::View;
 use crate::made;
 use crate::number::{count, percent, significant};
-use crate::stack::Figures;
+use crate::subject::{Section, Simulated, Subject};
 use maud::{Markup, html};
 
-/// The page around the figures in `drawn`.
-pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
-    let lead = html! {
-        "Models of " (view.output.name) " over " (view.input.name) ", on one recording of "
-        (count(view.report.recording.input.len())) " samples."
-    };
-    let simulated =
-        "Simulated: this recording comes from a simulated plant, not from a measurement.";
-    let body = html! {
-        (table(view))
-        @if let Some(source) = &view.report.recording.source {
-            p { "Recording: " (made::file(&source.path.display().to_string(), Some(&source.sha256))) }
+impl Subject for View<'_> {
+    fn sections() -> Vec<Section<Self>> {
+        let figures = vec![
+            residuals::over_time(),
+            residuals::over_input(),
+            residuals::histogram(),
+        ];
+        vec![Section::column("", figures)]
+    }
+
+    fn simulated(&self) -> Option<Simulated> {
+        self.is_simulated().then_some(Simulated {
+            page: Simulated::RECORDING,
+            caption: "",
+        })
+    }
+
+    fn lead(&self) -> Markup {
+        html! {
+            "Models of " (self.output.name) " over " (self.input.name) ", on one recording of "
+            (count(self.recording.input.len())) " samples."
         }
-        @for figure in View::ALL { (view.picture(*figure, drawn, html! {})) }
-    };
-    let simulated = view.simulated().then_some(simulated);
-    frame::html(
-        view.report.title,
-        lead,
-        simulated,
-        body,
-        view.report.made,
-        view.scripts(drawn),
-    )
+    }
+
+    fn above(&self) -> Markup {
+        html! {
+            (table(self))
+            @if let Some(source) = &self.recording.source {
+                p {
+                    "Recording: "
+                    (made::file(&source.path.display().to_string(), Some(&source.sha256)))
+                }
+            }
+        }
+    }
 }
 
 fn table(view: &View<'_>) -> Markup {
@@ -47,7 +57,7 @@ fn table(view: &View<'_>) -> Markup {
                 th scope="col" { "max" (unit) }
                 th scope="col" { "RMSE of range" }
             } }
-            tbody { @for model in view.report.models {
+            tbody { @for model in view.models {
                 @let errors = &model.forward.errors;
                 tr {
                     th scope="row" {

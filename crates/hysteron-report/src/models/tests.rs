@@ -1,8 +1,9 @@
 #![allow(clippy::unwrap_used)]
 
-use super::{ModelsReport, NamedForward};
+use super::NamedForward;
 use crate::error::ReportError;
 use crate::made::Made;
+use crate::report::{Report, Shown};
 use hysteron::{Errors, Forward, Recording};
 
 fn forward(recording: &Recording, error: f64) -> Forward {
@@ -32,10 +33,12 @@ fn every_model_has_its_panel_and_its_row() {
         .collect();
     for count in 1..=models.len() {
         let folder = tempfile::tempdir().unwrap();
-        let report = ModelsReport {
+        let report = Report {
             title: "models",
-            recording: &recording,
-            models: &models[..count],
+            shown: Shown::Models {
+                recording: &recording,
+                models: &models[..count],
+            },
             made: Made::default(),
         };
         let written = report.write(folder.path()).unwrap();
@@ -64,10 +67,12 @@ fn what_does_not_fit_together_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("report");
     let write = |models: &[NamedForward<'_>]| {
-        let report = ModelsReport {
+        let report = Report {
             title: "models",
-            recording: &recording,
-            models,
+            shown: Shown::Models {
+                recording: &recording,
+                models,
+            },
             made: Made::default(),
         };
         report.write(place.as_path()).unwrap_err()

@@ -1,31 +1,25 @@
-//! What every figure and caption reads, and the figures there are.
+//! What every figure reads: models and their residuals in the words and units that are shown.
 
-use super::page;
-use super::report::ModelsReport;
 use crate::clock::clock;
-use crate::draw::sheet::Drawing;
+use crate::error::ReportError;
 use crate::number::difference;
-use crate::panels::{Heading, WIDTH};
 use crate::quantity::Labelled;
-use crate::residuals::{CLASSES, Residuals};
-use crate::stack::Figures;
-use hysteron::Origin;
+use hysteron::{Forward, Origin, Recording};
 use std::borrow::Cow;
 
-/// A figure of the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Figure {
-    /// Modelled minus measured output over time.
-    Time,
-    /// The same over the input.
-    Input,
-    /// How often each residual occurs.
-    Histogram,
+/// One model's run over the recording.
+#[derive(Debug, Clone, Copy)]
+pub struct NamedForward<'a> {
+    /// The model, for example the name of its file.
+    pub name: &'a str,
+    /// Its output, and its errors.
+    pub forward: &'a Forward,
 }
 
-/// A report, ready to be drawn.
-pub(super) struct View<'a> {
-    pub(super) report: &'a ModelsReport<'a>,
+/// Models, ready to be drawn.
+pub(crate) struct View<'a> {
+    pub(super) recording: &'a Recording,
+    pub(super) models: &'a [NamedForward<'a>],
     pub(super) input: Labelled,
     pub(super) output: Labelled,
     pub(super) time: Cow<'a, [f64]>,
@@ -35,107 +29,43 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    pub(super) fn new(report: &'a ModelsReport<'a>) -> Self {
-        let recording = report.recording;
+    /// The parts, once they fit together.
+    pub(crate) fn new(
+        recording: &'a Recording,
+        models: &'a [NamedForward<'a>],
+    ) -> Result<Self, ReportError> {
+        if models.is_empty() {
+            return Err(ReportError::NoModel);
+        }
+        let expected = recording.input.len();
+        let outputs = models.iter().map(|m| m.forward.output_model.len());
+        let modelled = outputs.map(|found| ("output_model", found));
+        let mut lengths = modelled.chain([("recording.output", recording.output.len())]);
+        if let Some((series, found)) = lengths.find(|(_, found)| *found != expected) {
+            return Err(ReportError::Length {
+                series,
+                expected,
+                found,
+            });
+        }
         let label = |quantity, fallback| Labelled::first([quantity, quantity], fallback);
         let (time, time_label) = clock(recording);
-        let models = report.models.iter();
-        Self {
-            report,
+        let residuals = models
+            .iter()
+            .map(|model| difference(&model.forward.output_model, &recording.output))
+            .collect();
+        Ok(Self {
+            recording,
+            models,
             input: label(&recording.input_quantity, "input"),
             output: label(&recording.output_quantity, "output"),
             time,
             time_label,
-            residuals: models
-                .map(|model| difference(&model.forward.output_model, &recording.output))
-                .collect(),
-        }
+            residuals,
+        })
     }
 
-    /// A heading for each model, with its error.
-    fn headings(&self) -> Vec<Heading> {
-        let models = self.report.models.iter();
-        models
-            .map(|model| Heading {
-                name: model.name.to_owned(),
-                remark: format!(
-                    "RMSE {}, max {}",
-                    self.output.value(model.forward.errors.rmse),
-                    self.output.value(model.forward.errors.max_abs)
-                ),
-            })
-            .collect()
-    }
-}
-
-impl Figures for View<'_> {
-    type Figure = Figure;
-    const ALL: &'static [Figure] = &[Figure::Time, Figure::Input, Figure::Histogram];
-
-    fn stem(figure: Figure) -> &'static str {
-        match figure {
-            Figure::Time => "residuals-time",
-            Figure::Input => "residuals-input",
-            Figure::Histogram => "residuals-histogram",
-        }
-    }
-
-    fn simulated(&self) -> bool {
-        self.report.recording.origin == Origin::Simulated
-    }
-
-    fn title(&self, figure: Figure) -> String {
-        match figure {
-            Figure::Time => format!("Residuals over {}", self.time_label.name),
-            Figure::Input => format!("Residuals over {}", self.input.name),
-            Figure::Histogram => "Residuals: how often each size occurs".into(),
-        }
-    }
-
-    fn caption(&self, figure: Figure) -> String {
-        let what = format!("Modelled minus measured {}", self.output.name);
-        match figure {
-            Figure::Time => format!(
-                "{what}, a panel for each model with the same axes. A drift shows here as a slope."
-            ),
-            Figure::Input => format!(
-                "{what} at each {}. What the model cannot follow shows here as a pattern.",
-                self.input.name
-            ),
-            Figure::Histogram => format!(
-                "{what}: share of the samples in each of {} classes of equal width. Noise alone \
-                 gives a bell around zero.",
-                CLASSES
-            ),
-        }
-    }
-
-    fn draw(&self, figure: Figure) -> Option<Drawing> {
-        let residuals = Residuals {
-            headings: self.headings(),
-            each: &self.residuals,
-            label: self.output.renamed("residual"),
-            recorded: if self.simulated() {
-                "simulated"
-            } else {
-                "measured"
-            },
-        };
-        let mut sheet = self.sheet(figure, WIDTH);
-        let input = &self.report.recording.input;
-        let bottom = match figure {
-            Figure::Time => residuals.over_time(&mut sheet, &self.time, &self.time_label),
-            Figure::Input => residuals.over_input(&mut sheet, input, &self.input),
-            Figure::Histogram => residuals.histogram(&mut sheet),
-        };
-        Some(self.finish(figure, sheet, bottom))
-    }
-
-    fn is_linked(figure: Figure) -> bool {
-        figure != Figure::Histogram
-    }
-
-    fn page(&self, drawn: &[(Figure, Drawing)]) -> String {
-        page::html(self, drawn)
+    pub(super) fn is_simulated(&self) -> bool {
+        self.recording.origin == Origin::Simulated
     }
 }

@@ -2,8 +2,9 @@
 //! of their own.
 #![allow(clippy::unwrap_used)]
 
-use super::{NamedTrace, TrackReport, TrackTable};
+use super::{NamedTrace, TrackTable, Tracking};
 use crate::made::Made;
+use crate::report::{Report, Shown};
 use hysteron::control::{LoopStatus, Snapshot, Trace};
 use hysteron::{Plane, Quantity, operators};
 
@@ -82,14 +83,13 @@ impl Fixture {
         }
     }
 
-    /// Calls `show` with the report of the parts.
-    pub(super) fn report<R>(&self, simulated: bool, show: impl Fn(&TrackReport<'_>) -> R) -> R {
+    /// Calls `show` with the parts.
+    pub(super) fn tracking<R>(&self, simulated: bool, show: impl Fn(&Tracking<'_>) -> R) -> R {
         let named = self.names.iter().zip(&self.traces);
         let runs: Vec<NamedTrace<'_>> = named
             .map(|(name, trace)| NamedTrace { name, trace })
             .collect();
-        show(&TrackReport {
-            title: "load-step: simulated NiTi spring, 6 N to 10 N",
+        show(&Tracking {
             simulated,
             input: Quantity::with_unit("temperature", "degC"),
             output: Quantity::with_unit("displacement", "mm"),
@@ -98,8 +98,20 @@ impl Fixture {
             events: &self.events,
             table: &self.table,
             plane: &self.plane,
-            made: Made::default(),
         })
+    }
+
+    /// Calls `show` with the report of them.
+    pub(super) fn report<R>(&self, simulated: bool, show: impl Fn(&Report<'_>) -> R) -> R {
+        self.tracking(simulated, |tracking| show(&report(tracking)))
+    }
+}
+
+pub(super) fn report<'a>(tracking: &'a Tracking<'a>) -> Report<'a> {
+    Report {
+        title: "load-step: simulated NiTi spring, 6 N to 10 N",
+        shown: Shown::Tracking(tracking),
+        made: Made::default(),
     }
 }
 

@@ -1,19 +1,13 @@
-//! The report of a comparison of controllers.
+//! The report of controllers over the same reference.
 
-mod before_after;
-mod captions;
-mod comparison;
-mod figure;
-mod input;
+mod figures;
 mod page;
-mod report;
 mod reversal;
-mod series;
+mod tracking;
 mod view;
-mod weights_time;
 
-pub use comparison::write_comparison;
-pub use report::{NamedTrace, TrackReport, TrackTable};
+pub use tracking::{NamedTrace, TrackTable, Tracking};
+pub(crate) use view::View;
 
 #[cfg(test)]
 mod fixture;

@@ -1,54 +1,60 @@
-//! The page of a comparison.
+//! The page of controllers over the same reference.
 
-use super::figure::Figure;
+use super::figures::{before_after, close_up, errors, input, output, weights_time};
 use super::view::View;
-use crate::draw::sheet::Drawing;
-use crate::frame;
 use crate::number::{count, significant};
-use crate::stack::Figures;
+use crate::subject::{Section, Simulated, Subject};
 use maud::{Markup, html};
 
-/// The sections of the page and their figures.
-const SECTIONS: [(&str, &[Figure]); 4] = [
-    ("Tracking", &[Figure::Tracking, Figure::Error]),
-    ("Reversals", &[Figure::Reversal]),
-    ("What the controllers did", &[Figure::Input, Figure::Drive]),
-    (
-        "The model",
-        &[Figure::Prediction, Figure::WeightsTime, Figure::BeforeAfter],
-    ),
-];
+impl Subject for View<'_> {
+    fn sections() -> Vec<Section<Self>> {
+        let did = vec![input::input(), input::drive()];
+        let model = vec![
+            errors::prediction(),
+            weights_time::figure(),
+            before_after::figure(),
+        ];
+        vec![
+            Section::column("Tracking", vec![output::figure(), errors::tracking()]),
+            Section::column("Reversals", vec![close_up::figure()]),
+            Section::column("What the controllers did", did),
+            Section::column("The model", model),
+        ]
+    }
 
-/// The page around the figures in `drawn`.
-pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
-    let lead = html! {
-        "Control of the " (view.output.name)
-        @if view.has_drive() { " by " (view.drive.name) "," }
-        " through the hysteresis of its " (view.input.name) ": " (runs(view)) "."
-    };
-    let simulated = "Simulated: these runs come from a simulated plant, not from a device.";
-    let body = html! {
-        (table(view))
-        (facts(view))
-        @for (name, figures) in SECTIONS { (section(name, figures, view, drawn)) }
-        @if view.reversal.is_none() {
-            p { "The reference does not reverse before the first event: there is no lag to show." }
+    fn simulated(&self) -> Option<Simulated> {
+        self.tracking.simulated.then_some(Simulated {
+            page: "Simulated: these runs come from a simulated plant, not from a device.",
+            caption: "Simulated plant. ",
+        })
+    }
+
+    fn lead(&self) -> Markup {
+        html! {
+            "Control of the " (self.output.name)
+            @if self.has_drive() { " by " (self.drive.name) "," }
+            " through the hysteresis of its " (self.input.name) ": " (runs(self)) "."
         }
-        @if view.adapting().next().is_none() { p { "No controller adapted its weights." } }
-    };
-    let simulated = view.report.simulated.then_some(simulated);
-    frame::html(
-        view.report.title,
-        lead,
-        simulated,
-        body,
-        view.report.made,
-        view.scripts(drawn),
-    )
+    }
+
+    fn above(&self) -> Markup {
+        html! { (table(self)) (facts(self)) }
+    }
+
+    fn below(&self) -> Markup {
+        html! {
+            @if self.reversal.is_none() {
+                p {
+                    "The reference does not reverse before the first event: there is no lag to show."
+                }
+            }
+            @if self.adapting().next().is_none() { p { "No controller adapted its weights." } }
+        }
+    }
 }
 
 fn runs(view: &View<'_>) -> String {
-    match view.report.runs.len() {
+    match view.tracking.runs.len() {
         1 => "one controller".into(),
         several => format!("{several} controllers"),
     }
@@ -60,12 +66,12 @@ fn cell(value: Option<f64>, digits: usize) -> String {
 }
 
 fn table(view: &View<'_>) -> Markup {
-    let table = view.report.table;
+    let table = view.tracking.table;
     html! {
         @if !table.rows.is_empty() {
             div.wide { table {
                 thead { tr {
-                    th scope="col" { "Controller" @if view.report.simulated { " (simulated)" } }
+                    th scope="col" { "Controller" @if view.tracking.simulated { " (simulated)" } }
                     @for header in &table.headers { th scope="col" { (header) } }
                 } }
                 tbody { @for (name, values) in &table.rows { tr {
@@ -92,9 +98,9 @@ fn table(view: &View<'_>) -> Markup {
 
 /// What was run, and what happened when.
 fn facts(view: &View<'_>) -> Markup {
-    let report = view.report;
-    let time = report.runs.first().map_or(&[][..], |run| &run.trace.time);
-    let plane = report.plane;
+    let tracking = view.tracking;
+    let time = tracking.runs.first().map_or(&[][..], |run| &run.trace.time);
+    let plane = tracking.plane;
     html! {
         div.wide { table.facts {
             tr {
@@ -113,24 +119,12 @@ fn facts(view: &View<'_>) -> Markup {
                     (count(plane.levels())) " levels"
                 }
             }
-            @if !report.events.is_empty() { tr {
+            @if !tracking.events.is_empty() { tr {
                 th scope="row" { "Events" }
-                td { @for (time, words) in report.events {
+                td { @for (time, words) in tracking.events {
                     div { "at " (view.time.value(*time)) ": " (words) }
                 } }
             } }
         } }
-    }
-}
-
-fn section(name: &str, figures: &[Figure], view: &View<'_>, drawn: &[(Figure, Drawing)]) -> Markup {
-    let drawn_here = |figure: &&Figure| drawn.iter().any(|(drawn, _)| drawn == *figure);
-    html! {
-        @if figures.iter().any(|figure| drawn_here(&figure)) {
-            section {
-                h2 { (name) }
-                @for figure in figures { (view.picture(*figure, drawn, html! {})) }
-            }
-        }
     }
 }

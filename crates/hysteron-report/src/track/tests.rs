@@ -1,44 +1,44 @@
 //! Comparisons as a whole, of good runs and of poor ones.
 #![allow(clippy::unwrap_used)]
 
-use super::figure::Figure;
-use super::fixture::{Controller, FOUR, Fixture};
-use super::view::View;
+use super::fixture::{Controller, FOUR, Fixture, report};
+use crate::report::Report;
 use hysteron::Quantity;
 use std::fs;
 
-/// All figures. Each must be well-formed, without NaN or infinite numbers.
-fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
-    fixture.report(true, |report| {
-        let view = View::new(report);
-        let drawn: Vec<(Figure, String)> = Figure::ALL
-            .into_iter()
-            .filter_map(|figure| Some((figure, figure.svg(&view)?.svg)))
-            .collect();
-        for (figure, svg) in &drawn {
-            let document = roxmltree::Document::parse(svg).unwrap();
-            for node in document.descendants().flat_map(|node| node.attributes()) {
-                let value = node.value();
-                assert!(
-                    !value.contains("NaN") && !value.contains("inf"),
-                    "{figure:?}: {value}"
-                );
-            }
+/// All figures, by their stems. Each must be well-formed, without NaN or infinite numbers.
+fn figures(fixture: &Fixture) -> Vec<(&'static str, String)> {
+    let drawn = fixture.report(true, |report| drawn(report));
+    for (stem, svg) in &drawn {
+        let document = roxmltree::Document::parse(svg).unwrap();
+        for node in document.descendants().flat_map(|node| node.attributes()) {
+            let value = node.value();
+            assert!(
+                !value.contains("NaN") && !value.contains("inf"),
+                "{stem}: {value}"
+            );
         }
-        drawn
-    })
+    }
+    drawn
 }
 
-fn names(fixture: &Fixture) -> Vec<Figure> {
-    figures(fixture)
-        .into_iter()
-        .map(|(figure, _)| figure)
-        .collect()
+fn drawn(report: &Report<'_>) -> Vec<(&'static str, String)> {
+    let drawn = |stem| Some((stem, report.svg(stem).unwrap()?));
+    stems().into_iter().filter_map(drawn).collect()
 }
 
-fn of(fixture: &Fixture, wanted: Figure) -> String {
-    let mut drawn = figures(fixture).into_iter();
-    drawn.find(|(figure, _)| *figure == wanted).unwrap().1
+fn stems() -> Vec<&'static str> {
+    Fixture::new(&FOUR, 1).report(true, |report| report.stems().unwrap())
+}
+
+fn names(fixture: &Fixture) -> Vec<&'static str> {
+    let drawn = figures(fixture).into_iter();
+    drawn.map(|(stem, _)| stem).collect()
+}
+
+fn of(fixture: &Fixture, stem: &str) -> String {
+    let svg = |report: &Report<'_>| report.svg(stem).unwrap().unwrap();
+    fixture.report(true, svg)
 }
 
 /// Subpaths of the curves drawn with `colour`.
@@ -60,9 +60,9 @@ fn a_report_has_every_figure_twice_and_one_page() {
     let fixture = Fixture::new(&FOUR, 2000);
     let folder = tempfile::tempdir().unwrap();
     let written = fixture.report(true, |report| report.write(folder.path()).unwrap());
-    assert_eq!(written.len(), 1 + 2 * Figure::ALL.len());
+    assert_eq!(written.len(), 1 + 2 * stems().len());
     let page = fs::read_to_string(&written[0]).unwrap();
-    assert_eq!(page.matches("<svg").count(), Figure::ALL.len());
+    assert_eq!(page.matches("<svg").count(), stems().len());
     for load in ["src=\"http", "href=\"http", "url(http", "@import", "<link"] {
         assert!(!page.contains(load), "{load}");
     }
@@ -89,14 +89,11 @@ fn simulated_runs_say_so_in_every_figure() {
     let fixture = Fixture::new(&FOUR, 300);
     for simulated in [true, false] {
         fixture.report(simulated, |report| {
-            let view = View::new(report);
-            for figure in Figure::ALL {
-                let svg = figure.svg(&view).unwrap().svg;
-                assert_eq!(
-                    svg.contains("simulated, not measured"),
-                    simulated,
-                    "{figure:?}"
-                );
+            let drawn = drawn(report);
+            assert_eq!(drawn.len(), stems().len());
+            for (stem, svg) in drawn {
+                let says = svg.contains("simulated, not measured");
+                assert_eq!(says, simulated, "{stem}");
             }
         });
     }
@@ -108,59 +105,57 @@ fn what_no_run_has_is_left_out() {
         let mut fixture = Fixture::new(&FOUR, 300);
         change(&mut fixture);
         let drawn = names(&fixture);
-        let missing = Figure::ALL
-            .into_iter()
-            .filter(|figure| !drawn.contains(figure));
+        let missing = stems().into_iter().filter(|stem| !drawn.contains(stem));
         missing.collect::<Vec<_>>()
     };
     assert!(without(&|_| ()).is_empty());
     assert_eq!(
         without(&|f| f.traces.iter_mut().for_each(|t| t.snapshots.truncate(1))),
-        [Figure::WeightsTime, Figure::BeforeAfter]
+        ["track-weights", "track-plane"]
     );
     assert_eq!(
         without(&|f| f
             .traces
             .iter_mut()
             .for_each(|t| t.prediction.fill(f64::NAN))),
-        [Figure::Prediction]
+        ["track-prediction"]
     );
     assert_eq!(
         without(&|f| f.traces.iter_mut().for_each(|t| t.reference.fill(1.0))),
-        [Figure::Reversal]
+        ["track-reversal"]
     );
 }
 
 #[test]
 fn a_drive_that_is_the_input_has_no_figure_of_its_own() {
     let fixture = Fixture::new(&FOUR, 300);
-    fixture.report(true, |report| {
-        let mut report = report.clone();
-        report.drive = report.input.clone();
-        let view = View::new(&report);
-        assert!(Figure::Drive.svg(&view).is_none());
+    fixture.tracking(true, |tracking| {
+        let mut tracking = tracking.clone();
+        tracking.drive = tracking.input.clone();
+        let svg = |stem| report(&tracking).svg(stem).unwrap();
+        assert_eq!(svg("track-drive"), None);
         // The status goes with the input then.
-        let input = Figure::Input.svg(&view).unwrap().svg;
+        let input = svg("track-input").unwrap();
         assert!(input.contains("sensor fault") && input.contains("reading rejected"));
     });
 }
 
 #[test]
 fn one_controller_and_twelve() {
-    assert_eq!(names(&Fixture::new(&FOUR[3..], 300)), Figure::ALL);
+    assert_eq!(names(&Fixture::new(&FOUR[3..], 300)), stems());
     let twelve: Vec<Controller> = FOUR.iter().copied().cycle().take(12).collect();
     let fixture = Fixture::new(&twelve, 300);
-    assert_eq!(names(&fixture), Figure::ALL);
-    assert_eq!(pieces(&of(&fixture, Figure::Tracking), "#12385f"), 12);
+    assert_eq!(names(&fixture), stems());
+    assert_eq!(pieces(&of(&fixture, "track-output"), "#12385f"), 12);
 }
 
 #[test]
 fn samples_that_are_no_numbers_break_the_curve() {
     let mut fixture = Fixture::new(&FOUR[..1], 400);
-    assert_eq!(pieces(&of(&fixture, Figure::Error), "#12385f"), 1);
+    assert_eq!(pieces(&of(&fixture, "track-error"), "#12385f"), 1);
     fixture.traces[0].output[150..200].fill(f64::NAN);
     fixture.traces[0].reference[300] = f64::INFINITY;
-    assert_eq!(pieces(&of(&fixture, Figure::Error), "#12385f"), 3);
+    assert_eq!(pieces(&of(&fixture, "track-error"), "#12385f"), 3);
     for series in [f64::NAN, f64::INFINITY, 1e308] {
         let mut fixture = Fixture::new(&FOUR, 50);
         for trace in &mut fixture.traces {
@@ -192,8 +187,8 @@ fn a_single_sample_is_drawn() {
 #[test]
 fn many_samples_stay_small() {
     let fixture = Fixture::new(&FOUR, 100_000);
-    for (figure, svg) in figures(&fixture) {
-        assert!(svg.len() < 400_000, "{figure:?}: {} bytes", svg.len());
+    for (stem, svg) in figures(&fixture) {
+        assert!(svg.len() < 400_000, "{stem}: {} bytes", svg.len());
     }
 }
 
@@ -201,14 +196,14 @@ fn many_samples_stay_small() {
 fn a_large_error_that_does_not_last_does_not_set_the_scale() {
     let mut errors = vec![0.1; 1000];
     errors[..5].fill(-40.0);
-    let (span, cut) = super::series::robust([errors.as_slice()].into_iter());
+    let (span, cut) = super::figures::cut::robust([errors.as_slice()].into_iter());
     assert!(cut && span.low > -0.2 && span.high < 0.2, "{span:?}");
     errors[..5].fill(-0.12);
-    assert!(!super::series::robust([errors.as_slice()].into_iter()).1);
+    assert!(!super::figures::cut::robust([errors.as_slice()].into_iter()).1);
     // Marked where it is cut off.
     let mut fixture = Fixture::new(&FOUR, 1000);
     fixture.traces[1].output[500] = 60.0;
-    assert!(of(&fixture, Figure::Error).contains("beyond the axis"));
+    assert!(of(&fixture, "track-error").contains("beyond the axis"));
 }
 
 #[test]
@@ -216,11 +211,11 @@ fn names_are_escaped() {
     let mut fixture = Fixture::new(&FOUR, 100);
     fixture.names[0] = "<b>P & \"D\"</b>";
     fixture.events[0].1 = "<i>load</i>".into();
-    fixture.report(true, |report| {
-        let mut report = report.clone();
-        report.output = Quantity::with_unit("<u>lift</u>", "µm");
+    fixture.tracking(true, |tracking| {
+        let mut tracking = tracking.clone();
+        tracking.output = Quantity::with_unit("<u>lift</u>", "µm");
         let folder = tempfile::tempdir().unwrap();
-        let page = fs::read_to_string(&report.write(folder.path()).unwrap()[0]).unwrap();
+        let page = fs::read_to_string(&report(&tracking).write(folder.path()).unwrap()[0]).unwrap();
         for raw in ["<b>P", "<i>load", "<u>lift"] {
             assert!(!page.contains(raw), "{raw}");
         }
@@ -269,5 +264,5 @@ fn figures_of_an_earlier_report_are_removed() {
         fs::read_dir(folder.path()).unwrap().count(),
         written.len() + 1
     );
-    assert_eq!(written.len(), 1 + 2 * (Figure::ALL.len() - 2));
+    assert_eq!(written.len(), 1 + 2 * (stems().len() - 2));
 }

@@ -12,7 +12,7 @@ use super::wish::Wish;
 use base64::Engine;
 use hysteron::{TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
-use hysteron_report::{Made, Report};
+use hysteron_report::{Made, Report, Shown};
 use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
 use std::io::{Cursor, Write};
@@ -217,9 +217,11 @@ impl Session {
         let seen = Parts::new(behind.collect::<hysteron::Result<_>>()?)?;
         let report = Report {
             title: &title,
-            model,
-            recording: &seen.shown,
-            evaluation: &evaluation,
+            shown: Shown::Evaluation {
+                model,
+                recording: &seen.shown,
+                evaluation: &evaluation,
+            },
             made: Made::default(),
         };
         let page = report.page();

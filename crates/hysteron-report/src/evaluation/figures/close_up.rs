@@ -1,25 +1,52 @@
 //! Fig. 15: the dead band with the largest input discrepancy, close up.
 
-use super::over_time::{WIDTH, policies};
-use crate::draw::axis::time_axis;
-use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
-use crate::draw::stretches::extent;
-use crate::draw::stretches::stretches;
+use super::over_time::policies;
+use crate::draw::axis::{Axis, Span, time_axis};
+use crate::draw::panel::{Labels, Panel, left_of};
+use crate::draw::shape::Rect;
+use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::stretches::{extent, stretches};
 use crate::draw::style::{ANTICIPATE, GUIDE, MEASURED, MODELLED};
 use crate::evaluation::dead_band::{Worst, worst};
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
-use crate::stack::Figures;
+use crate::figure::Figure;
+use crate::panels::WIDTH;
 use std::ops::Range;
 
 const OUTPUT_HEIGHT: f64 = 150.0;
 const INPUT_HEIGHT: f64 = 250.0;
 const GAP: f64 = 16.0;
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fig15-dead-band",
+        chapter: Some("15"),
+        width: WIDTH,
+        is_linked: true,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let (inverse, worst) = (view.inverse()?, find(view)?);
+    let (input, output) = (&view.input.name, &view.output.name);
+    let at = |series: &[f64]| series[worst.sample];
+    let measured = at(&view.recording.input);
+    let [begin, end, when] = [worst.stretch.start, worst.stretch.end - 1, worst.sample]
+        .map(|k| view.time_label.value(view.time[k]));
+    let [held, anticipated] = [&inverse.hold, &inverse.anticipate]
+        .map(|run| view.input.value((at(&run.input_model) - measured).abs()));
+    Some([
+        "Largest dead-band discrepancy, close up".into(),
+        format!(
+            "The {output} rests from {begin} to {end} while the {input} travels. At {when} the \
+             held {input} is off by {held}, the anticipated one by {anticipated}."
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let inverse = view.inverse()?;
     let found = find(view)?;
     let window = around(&found.stretch, view.recording.input.len());
@@ -29,7 +56,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         [&inverse.hold, &inverse.anticipate].map(|run| part(&run.input_model, &window));
     let time = part(&view.time, &window);
 
-    let mut sheet = view.sheet(Figure::DeadBand, WIDTH);
     let mut keys = vec![Key::Line(MEASURED, view.recorded().into())];
     keys.extend(policies(&inverse.moving));
     keys.push(Key::Line(GUIDE, "largest discrepancy of hold".into()));
@@ -78,11 +104,11 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     below.curve(canvas, time, input, &MEASURED);
     below.curve(canvas, time, hold, &MODELLED);
     below.curve(canvas, time, anticipate, &ANTICIPATE);
-    Some(view.finish(Figure::DeadBand, sheet, lower.bottom() + BELOW + 4.0))
+    Some(below.end())
 }
 
 /// The dead band that the figure shows.
-pub(crate) fn find(view: &View<'_>) -> Option<Worst> {
+fn find(view: &View<'_>) -> Option<Worst> {
     let inverse = view.inverse()?;
     worst(
         &inverse.moving,

@@ -2,25 +2,93 @@
 //! levels.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
+use crate::draw::sheet::{Key, Sheet};
 use crate::draw::style::LINES;
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
-use crate::number::{magnitude, power_of_ten, significant};
-use crate::panels::WIDTH;
+use crate::figure::Figure;
+use crate::number::{magnitude, percent, power_of_ten, significant};
+use crate::panels::{WIDTH, single};
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 use hysteron::{Criterion, Validation};
 
 const PLOT_HEIGHT: f64 = 340.0;
 
 /// Errors beyond this many times the best are cut off: they would press the others together.
-pub(crate) const SHOWN: f64 = 6.0;
+const SHOWN: f64 = 6.0;
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "cross-validation",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let validation = view.validation()?;
+    let caption = [
+        chosen(validation, view),
+        hidden(validation),
+        rivals(validation),
+    ];
+    Some(["Choice of levels and smoothness".into(), caption.concat()])
+}
+
+fn chosen(validation: &Validation, view: &View<'_>) -> String {
+    let parts = match validation.whole_branches {
+        true => "",
+        false => "parts of ",
+    };
+    let left_out = format!(
+        "{} on {parts}branches left out, {} of the range",
+        view.output.value(validation.rmse),
+        percent(validation.nrmse_percent),
+    );
+    match validation.criterion {
+        Criterion::LeftOut => format!(
+            "Error on {parts}branches left out, in {} folds, at the best strength across. Chosen is \
+             the smallest: {left_out}.",
+            validation.folds
+        ),
+        Criterion::Evidence => format!(
+            "Error over the samples fitted. The evidence chose, because there are few branches to \
+             leave out, so the smallest error is not the best. What was chosen errs {left_out}."
+        ),
+    }
+}
+
+/// The numbers of levels that were tried and are not drawn.
+fn hidden(validation: &Validation) -> String {
+    let drawn = shown(validation).0;
+    let (mut tried, ..) = validation.table();
+    tried.retain(|levels| !drawn.contains(levels));
+    let hidden: Vec<String> = tried.iter().map(usize::to_string).collect();
+    match hidden.is_empty() {
+        true => String::new(),
+        false => format!(
+            " Errors of more than {SHOWN} times the smallest are not shown: {} levels.",
+            hidden.join(", ")
+        ),
+    }
+}
+
+fn rivals(validation: &Validation) -> String {
+    let rivals = validation.rivals.iter().map(|rival| {
+        let error = percent(rival.nrmse_percent);
+        format!("{} errs {error}", rival.name)
+    });
+    let rivals: Vec<String> = rivals.collect();
+    match rivals.is_empty() {
+        true => String::new(),
+        false => format!(" On the same samples left out, {}.", rivals.join(", ")),
+    }
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let (levels, smooth, errors) = shown(view.validation()?);
     let of_levels = |k: usize| format!("{k} levels");
     let lines: Vec<(String, Vec<Option<f64>>)> = match smooth.len() {
@@ -47,7 +115,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     };
     let x = Axis::named(&name, labels);
 
-    let mut sheet = view.sheet(Figure::CrossValidation, WIDTH);
     let stroke = |n: usize| match lines.len() {
         1 => LINES[LINES.len() - 2],
         _ => LINES[n % LINES.len()],
@@ -59,14 +126,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         .collect();
     keys.push(Key::Marker(Marker::Disc, "chosen".into(), ""));
     sheet.legend(&keys);
-    let left = MARGIN + left_of(&y, PLOT_HEIGHT);
-    let area = Rect {
-        x: left,
-        y: sheet.top,
-        width: WIDTH - MARGIN - left,
-        height: PLOT_HEIGHT,
-    };
-    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    let panel = single(sheet, x, y, PLOT_HEIGHT);
     for (n, (_, errors)) in lines.iter().enumerate() {
         let xs: Vec<f64> = (0..errors.len()).map(|n| n as f64).collect();
         // What was not tried breaks the line.
@@ -87,8 +147,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
             Marker::Disc.draw(&mut sheet.canvas, [at], 5.0);
         }
     }
-    let height = area.bottom() + BELOW + 4.0;
-    Some(view.finish(Figure::CrossValidation, sheet, height))
+    Some(panel.end())
 }
 
 /// The table of a choice without what would press the rest together: levels and strengths of which
@@ -116,14 +175,6 @@ fn shown(validation: &Validation) -> (Vec<usize>, Vec<f64>, Vec<Vec<Option<f64>>
 fn retain<T>(values: &mut Vec<T>, kept: &[bool]) {
     let mut kept = kept.iter();
     values.retain(|_| kept.next().is_some_and(|kept| *kept));
-}
-
-/// The numbers of levels that were tried and are not drawn.
-pub(crate) fn choices_hidden(validation: &Validation) -> Vec<String> {
-    let drawn = shown(validation).0;
-    let (tried, ..) = validation.table();
-    let hidden = tried.into_iter().filter(|levels| !drawn.contains(levels));
-    hidden.map(|levels| levels.to_string()).collect()
 }
 
 /// `10⁻⁸` where it is one.

@@ -1,18 +1,18 @@
 //! Fig. 6: operator states on the plane at a few instants.
 
-use crate::draw::canvas::{Anchor, Canvas, Rect};
+use crate::draw::canvas::Canvas;
 use crate::draw::marker::Marker;
-use crate::draw::panel::{BELOW, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
+use crate::draw::panel::{BELOW, Labels, Panel, left_of};
+use crate::draw::shape::{Anchor, Rect};
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{GUIDE, LABEL, TICK};
 use crate::draw::text;
-use crate::evaluation::figure::Figure;
 use crate::evaluation::instants::candidates;
 use crate::evaluation::view::View;
+use crate::figure::Figure;
+use crate::panels::WIDTH;
 use crate::plane::{Half, axes};
-use crate::stack::Figures;
 
-const WIDTH: f64 = 760.0;
 const COLUMNS: usize = 3;
 const MOST: usize = 6;
 /// How many instants are examined before some are chosen.
@@ -26,8 +26,30 @@ struct Instant {
     half: Half,
 }
 
-pub(super) fn svg(view: &View<'_>) -> Drawing {
-    let mut sheet = view.sheet(Figure::PlaneEvolution, WIDTH);
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fig06-plane-evolution",
+        chapter: Some("6"),
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let input = &view.input.name;
+    Some([
+        "Evolution of the plane".into(),
+        format!(
+            "Operator states on the plane at telling moments of the {input}. The dashed line is \
+             the present {input}: rising, it switches operators on below it; falling, it switches \
+             them off to its right."
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     sheet.legend(&[
         Key::Marker(Marker::Ring, "γ = 0: S".into(), "min"),
         Key::Marker(Marker::Square, "0 < γ < 1: boundary".into(), ""),
@@ -49,7 +71,7 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
         };
         bottom = area.bottom();
         let below_is_free = k + COLUMNS >= instants.len();
-        let labels = crate::draw::panel::Labels {
+        let labels = Labels {
             x: below_is_free,
             y: column == 0,
         };
@@ -58,7 +80,7 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
         states(&mut sheet.canvas, &panel, instant);
         present(&mut sheet.canvas, view, &panel, instant.sample);
     }
-    view.finish(Figure::PlaneEvolution, sheet, bottom + BELOW + 4.0)
+    Some(bottom + BELOW + 4.0)
 }
 
 /// The first instants at which the operators disagree; a plane that is all on or all off has no

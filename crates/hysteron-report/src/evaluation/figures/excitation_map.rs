@@ -1,17 +1,16 @@
 //! The plane coloured by what recordings say of each operator.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::{Rect, rect_data};
-use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
-use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
+use crate::draw::panel::{Labels, Panel, left_of, threshold};
+use crate::draw::shape::{Rect, rect_data};
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::Stroke;
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
+use crate::figure::Figure;
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 use hysteron::{Excitation, Plane, Quantity, operators};
 
-const STEM: &str = "excitation-map";
+const TITLE: &str = "What is known of each operator";
 const WIDTH: f64 = 600.0;
 
 /// Darker is better known, so that a grey print keeps the order.
@@ -31,19 +30,39 @@ fn colour(class: Excitation) -> &'static str {
 #[must_use]
 pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -> String {
     let input = Labelled::first([input, input], "input");
-    let sheet = Sheet::new(STEM, WIDTH, "What is known of each operator", None);
-    let (sheet, height) = draw(sheet, plane, classes, &input);
+    let mut sheet = Sheet::new("excitation-map", WIDTH, TITLE, None);
+    let height = map(&mut sheet, plane, classes, &input);
     let label = format!("Operators on the plane: {}.", counts(classes));
     sheet.finish(height, &label).svg
 }
 
 /// The same for the recording that a model was fitted to, where its file tells.
-pub(super) fn of_model(view: &View<'_>) -> Option<Drawing> {
-    let confidence = view.confidence()?;
-    let sheet = view.sheet(Figure::Excitation, WIDTH);
-    let classes = &confidence.excitation;
-    let (sheet, height) = draw(sheet, view.source.plane(), classes, &view.input);
-    Some(view.finish(Figure::Excitation, sheet, height))
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "excitation",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let classes = &view.confidence()?.excitation;
+    Some([
+        TITLE.into(),
+        format!(
+            "What the {} that was fitted says of each operator: {}.",
+            view.input.name,
+            counts(classes)
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
+    let classes = &view.confidence()?.excitation;
+    Some(map(sheet, view.source.plane(), classes, &view.input))
 }
 
 /// How many operators are in each class, in words.
@@ -55,8 +74,8 @@ pub(crate) fn counts(classes: &[Excitation]) -> String {
     words.join(", ")
 }
 
-/// Legend and plane; returns the height of the figure with it.
-fn draw(mut sheet: Sheet, plane: &Plane, classes: &[Excitation], input: &Labelled) -> (Sheet, f64) {
+/// Legend and plane; returns the height of the figure.
+fn map(sheet: &mut Sheet, plane: &Plane, classes: &[Excitation], input: &Labelled) -> f64 {
     let count = |class| classes.iter().filter(|c| **c == class).count();
     let keys = Excitation::ALL.map(|class| {
         let words = format!("{}: {}", class.words(), count(class));
@@ -100,7 +119,7 @@ fn draw(mut sheet: Sheet, plane: &Plane, classes: &[Excitation], input: &Labelle
     for (class, path) in cells.iter().filter(|(_, path)| !path.is_empty()) {
         sheet.canvas.path(path, Some(colour(*class)), Some(&seam));
     }
-    (sheet, area.bottom() + BELOW + 4.0)
+    panel.end()
 }
 
 #[cfg(test)]

@@ -1,14 +1,12 @@
 //! Fig. 2: the major loops of one model at several loads.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
+use crate::draw::sheet::{Key, Sheet};
 use crate::draw::style::{ANTICIPATE, MEASURED, MODELLED};
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
+use crate::figure::Figure;
+use crate::panels::single;
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 420.0;
@@ -16,7 +14,29 @@ const PLOT_HEIGHT: f64 = 420.0;
 /// Inputs on each branch.
 const SAMPLES: usize = 500;
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fig02-load-loops",
+        chapter: Some("2"),
+        width: WIDTH,
+        is_linked: true,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let name = &view.source.load()?.quantity.name;
+    Some([
+        format!("major loops by {name}"),
+        format!(
+            "One model that depends on the {name}: the whole loop at the smallest, the middle and \
+             the largest that it was identified at."
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let load = view.source.load()?;
     let (low, high) = load.range();
     // The load moves the loops along the axis.
@@ -44,22 +64,13 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         keys.push(Key::Line(stroke, words));
     }
 
-    let mut sheet = view.sheet(Figure::LoadLoops, WIDTH);
     sheet.legend(&keys);
     let x = Axis::new(&view.input, Span::of(&input).padded(0.03));
     let outputs = loops.iter().flat_map(|(output, _)| output);
     let y = Axis::new(&view.output, Span::of(outputs).padded(0.04));
-    let left = MARGIN + left_of(&y, PLOT_HEIGHT);
-    let area = Rect {
-        x: left,
-        y: sheet.top,
-        width: WIDTH - MARGIN - left,
-        height: PLOT_HEIGHT,
-    };
-    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    let panel = single(sheet, x, y, PLOT_HEIGHT);
     for (output, stroke) in &loops {
         panel.loops(&mut sheet.canvas, &input, output, stroke);
     }
-    let height = area.bottom() + BELOW + 4.0;
-    Some(view.finish(Figure::LoadLoops, sheet, height))
+    Some(panel.end())
 }

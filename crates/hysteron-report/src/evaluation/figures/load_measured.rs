@@ -1,14 +1,12 @@
 //! Loops of the recording at each of its loads, measured and modelled.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
+use crate::draw::sheet::{Key, Sheet};
 use crate::draw::style::{LINES, Stroke};
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
+use crate::figure::Figure;
+use crate::panels::single;
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 use std::ops::Range;
 
 const WIDTH: f64 = 620.0;
@@ -33,14 +31,14 @@ const MODELLED: Stroke = Stroke {
 const COLOURS: [usize; MOST] = [2, 1, 5, 4, 3, 0];
 
 /// A load of the recording, and where it rests there.
-pub(crate) struct Resting {
-    pub(crate) load: f64,
+struct Resting {
+    load: f64,
     stretches: Vec<Range<usize>>,
 }
 
 /// The loads of the fit at which the recording rests, ascending. None where the load moves, or has
 /// too many values.
-pub(crate) fn resting(view: &View<'_>) -> Option<Vec<Resting>> {
+fn resting(view: &View<'_>) -> Option<Vec<Resting>> {
     let dependence = view.source.load()?;
     let (low, high) = dependence.range();
     let loads = view.recording.load.as_ref()?;
@@ -92,7 +90,35 @@ fn apart(loads: &[f64], gap: f64) -> Vec<f64> {
     groups.map(|group| group[group.len() / 2]).collect()
 }
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "load-measured",
+        chapter: None,
+        width: WIDTH,
+        is_linked: true,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let (load, found) = (&view.source.load()?.quantity.name, resting(view)?);
+    let (input, output) = (&view.input.name, &view.output.name);
+    let loads = match found.len() {
+        1 => "one".to_owned(),
+        count => format!("{count} values"),
+    };
+    Some([
+        format!("{output} over {input}, by {load}"),
+        format!(
+            "The recording where the {load} rests, at {loads} of it: {} loops, and over them what \
+             the model says of the same samples.",
+            view.recorded(),
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let (found, load) = (resting(view)?, view.source.load()?);
     let quantity = Labelled::first([&load.quantity, &load.quantity], "load");
     let stroke = |n: usize| Stroke::solid(LINES[COLOURS[n % MOST]].colour, 3.2);
@@ -106,7 +132,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         .collect();
     keys.push(Key::Line(MODELLED, "modelled".into()));
 
-    let mut sheet = view.sheet(Figure::LoadMeasured, WIDTH);
     sheet.legend(&keys);
     let (input, output, modelled) = (
         &view.recording.input,
@@ -118,14 +143,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         &view.output,
         Span::of(output.iter().chain(modelled)).padded(0.04),
     );
-    let left = MARGIN + left_of(&y, PLOT_HEIGHT);
-    let area = Rect {
-        x: left,
-        y: sheet.top,
-        width: WIDTH - MARGIN - left,
-        height: PLOT_HEIGHT,
-    };
-    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    let panel = single(sheet, x, y, PLOT_HEIGHT);
     // The modelled loops over all measured ones.
     for (n, at) in found.iter().enumerate() {
         for stretch in at.stretches.iter().cloned() {
@@ -137,6 +155,5 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         let (input, modelled) = (&input[stretch.clone()], &modelled[stretch]);
         panel.loops(&mut sheet.canvas, input, modelled, &MODELLED);
     }
-    let height = area.bottom() + BELOW + 4.0;
-    Some(view.finish(Figure::LoadMeasured, sheet, height))
+    Some(panel.end())
 }

@@ -2,19 +2,35 @@
 
 use super::over_time::measured_and_modelled;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, MARGIN};
+use crate::draw::sheet::Sheet;
 use crate::draw::style::{BAND, MEASURED, MODELLED};
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
-use crate::stack::Figures;
+use crate::figure::Figure;
+use crate::panels::single;
 
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 420.0;
 
-pub(super) fn svg(view: &View<'_>) -> Drawing {
-    let mut sheet = view.sheet(Figure::Loops, WIDTH);
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fig11-loops",
+        chapter: Some("11"),
+        width: WIDTH,
+        is_linked: true,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let (input, output, recorded) = (&view.input.name, &view.output.name, view.recorded());
+    Some([
+        format!("{output} over {input}"),
+        format!("Modelled and {recorded} {output} over {recorded} {input}: major and minor loops."),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     sheet.legend(&measured_and_modelled(view));
     let (input, output, modelled) = (
         &view.recording.input,
@@ -28,18 +44,11 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
         &view.output,
         Span::of(output.iter().chain(modelled).chain(edges)).padded(0.04),
     );
-    let left = MARGIN + left_of(&y, PLOT_HEIGHT);
-    let area = Rect {
-        x: left,
-        y: sheet.top,
-        width: WIDTH - MARGIN - left,
-        height: PLOT_HEIGHT,
-    };
-    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    let panel = single(sheet, x, y, PLOT_HEIGHT);
     if let Some(band) = &band {
         panel.band(&mut sheet.canvas, input, band, BAND);
     }
     panel.loops(&mut sheet.canvas, input, output, &MEASURED);
     panel.loops(&mut sheet.canvas, input, modelled, &MODELLED);
-    view.finish(Figure::Loops, sheet, area.bottom() + BELOW + 4.0)
+    Some(panel.end())
 }

@@ -2,14 +2,14 @@
 
 use super::weights_map::{WIDTH, plot};
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Short;
-use crate::draw::sheet::{Drawing, Key};
+use crate::draw::shape::Short;
+use crate::draw::sheet::{Key, Sheet};
 use crate::draw::style::Stroke;
-use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
+use crate::figure::Figure;
+use crate::number::count;
 use crate::plane::Half;
 use crate::quantity::Labelled;
-use crate::stack::Figures;
 use hysteron::{Confidence, Excitation};
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ const UNKNOWN: Stroke = Stroke::solid("#6b7480", 1.0);
 
 /// The standard error of each weight; zero where the data say nothing of it, and the number there
 /// is that of the prior alone.
-pub(crate) fn known(confidence: &Confidence) -> impl Iterator<Item = f64> + '_ {
+fn known(confidence: &Confidence) -> impl Iterator<Item = f64> + '_ {
     let all = confidence.standard_error.iter().zip(&confidence.excitation);
     all.map(|(error, class)| match class {
         Excitation::Never => 0.0,
@@ -26,7 +26,32 @@ pub(crate) fn known(confidence: &Confidence) -> impl Iterator<Item = f64> + '_ {
     })
 }
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "standard-errors",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let confidence = view.confidence()?;
+    let largest = known(confidence).fold(0.0, f64::max);
+    Some([
+        "Standard errors of the weights".into(),
+        format!(
+            "Standard errors of the weights, from {} replicates of a bootstrap over branches; the \
+             largest is {}. Weights that are held at zero in every replicate have none.",
+            count(confidence.replicates),
+            view.output.value(largest)
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let confidence = view.confidence()?;
     let of = view.source.weights().iter();
     let largest = of.fold(0.0, |largest: f64, mu| largest.max(mu.abs()));
@@ -50,7 +75,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let high = if high > 0.0 { high } else { 1.0 };
     let scale = Axis::new(&label, Span { low: 0.0, high });
 
-    let mut sheet = view.sheet(Figure::StandardErrors, WIDTH);
     let excitation = confidence.excitation.iter();
     let unknown: Vec<f64> = excitation
         .map(|class| f64::from(u8::from(*class == Excitation::Never)))
@@ -66,7 +90,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         keys.push(Key::Text(String::new()));
     }
     sheet.legend(&keys);
-    let (panel, bottom) = plot(&mut sheet, view, &half, |cell| cell.largest, &scale, high);
+    let panel = plot(sheet, view, &half, |cell| cell.largest, &scale, high);
     let mut slashes = String::new();
     for cell in Half::of_values(view.source.plane(), &unknown).cells() {
         if cell.sum == 0.0 || cell.mean() < 1.0 {
@@ -83,5 +107,5 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         );
     }
     sheet.canvas.path(&slashes, None, Some(&UNKNOWN));
-    Some(view.finish(Figure::StandardErrors, sheet, bottom))
+    Some(panel.end())
 }

@@ -1,23 +1,39 @@
 //! Fig. 8(b): how large the weights are.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
-use crate::draw::panel::{BELOW, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
-use crate::evaluation::figure::Figure;
+use crate::draw::panel::{Panel, left_of};
+use crate::draw::shape::Rect;
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::evaluation::view::View;
+use crate::figure::Figure;
 use crate::plane::{Cell, Half, axes};
-use crate::stack::Figures;
 
 pub(super) const WIDTH: f64 = 600.0;
 
-pub(super) fn svg(view: &View<'_>) -> Drawing {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fig08b-weights-map",
+        chapter: Some("8(b)"),
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(_: &View<'_>) -> Option<[String; 2]> {
+    Some([
+        "Size of the weights".into(),
+        "The weights μ over the plane; the darker, the larger.".into(),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let half = Half::of_values(view.source.plane(), view.source.weights());
     let span = Span::from_zero(half.cells().map(|cell| cell.sum));
     let scale = Axis::new(&view.output.renamed("weight μ"), span);
 
-    let mut sheet = view.sheet(Figure::WeightsMap, WIDTH);
     let mut keys = Vec::new();
     keys.extend((span.low < 0.0).then(|| Key::Text("cells with − : weights below zero".into())));
     keys.extend(half.remark().map(Key::Text));
@@ -26,20 +42,12 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
     }
     sheet.legend(&keys);
 
-    let (panel, bottom) = plot(
-        &mut sheet,
-        view,
-        &half,
-        |cell| cell.sum,
-        &scale,
-        span.largest(),
-    );
+    let panel = plot(sheet, view, &half, |cell| cell.sum, &scale, span.largest());
     half.signs(&mut sheet.canvas, &panel, view.source.zero());
-    view.finish(Figure::WeightsMap, sheet, bottom)
+    Some(panel.end())
 }
 
-/// The plane, each cell coloured by its value relative to `largest`, and the bar of `scale`;
-/// returns the panel and the height of the figure.
+/// The plane, each cell coloured by its value relative to `largest`, and the bar of `scale`.
 pub(super) fn plot(
     sheet: &mut Sheet,
     view: &View<'_>,
@@ -47,7 +55,7 @@ pub(super) fn plot(
     value: impl Fn(&Cell) -> f64,
     scale: &Axis,
     largest: f64,
-) -> (Panel, f64) {
+) -> Panel {
     let [alpha, beta] = axes(view.source.plane(), &view.input);
     let left = MARGIN + left_of(&beta, WIDTH);
     let side = WIDTH - MARGIN - left - room(scale, WIDTH);
@@ -65,5 +73,5 @@ pub(super) fn plot(
         ..area
     };
     colour_bar(&mut sheet.canvas, bar, scale, largest);
-    (panel, area.bottom() + BELOW + 4.0)
+    panel
 }

@@ -1,20 +1,44 @@
 //! Fig. 8(a): where the weights are not zero.
 
-use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
-use crate::draw::panel::{BELOW, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
-use crate::evaluation::figure::Figure;
+use crate::draw::panel::left_of;
+use crate::draw::shape::Rect;
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::evaluation::view::View;
+use crate::figure::Figure;
+use crate::number::count;
 use crate::plane::{Half, axes};
-use crate::stack::Figures;
 
 const WIDTH: f64 = 520.0;
 
-pub(super) fn svg(view: &View<'_>) -> Drawing {
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "fig08a-weights-plane",
+        chapter: Some("8(a)"),
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let input = &view.input.name;
+    Some([
+        "Weights on the plane".into(),
+        format!(
+            "{} of {} weights are not zero. Each stands at the thresholds of its operator: α, \
+             where the falling {input} switches it off, and β, where the rising {input} switches \
+             it on.",
+            count(view.source.weights_not_zero()),
+            count(view.source.weights().len()),
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let half = Half::of_values(view.source.plane(), view.source.weights());
     let zero = view.source.zero();
-    let mut sheet = view.sheet(Figure::WeightsPlane, WIDTH);
     let [alpha, beta] = axes(view.source.plane(), &view.input);
     let left = MARGIN + left_of(&beta, WIDTH);
     let side = WIDTH - MARGIN - left;
@@ -54,5 +78,5 @@ pub(super) fn svg(view: &View<'_>) -> Drawing {
         some.iter().map(|cell| panel.point(cell.alpha, cell.beta)),
         radius,
     );
-    view.finish(Figure::WeightsPlane, sheet, area.bottom() + BELOW + 4.0)
+    Some(panel.end())
 }

@@ -1,17 +1,20 @@
-//! The report of a comparison that the library made of a scenario.
+//! The report of a comparison that `hysteron_sim` made of a scenario.
 
-use super::report::{NamedTrace, TrackReport, TrackTable};
 use crate::error::ReportError;
 use crate::made::Made;
+use crate::report::{Report, Shown};
+use crate::track::{NamedTrace, TrackTable, Tracking};
 use hysteron::{AtomicFolder, Quantity};
 use hysteron_sim::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
 
 /// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one.
-/// See [`TrackReport::write_into`].
+/// See
+/// [`Report::write_into`].
 ///
 /// # Errors
-/// As [`TrackReport::write`].
+///
+/// As [`Report::write`].
 pub fn write_comparison(
     scenario: &Scenario,
     comparison: &Comparison,
@@ -30,8 +33,7 @@ pub fn write_comparison(
     let events = scenario.disturbance.iter();
     let events: Vec<(f64, String)> = events.map(|event| (event.at_s, event.words())).collect();
     let table = table(scenario, comparison, &output);
-    TrackReport {
-        title: &scenario.title,
+    let tracking = Tracking {
         simulated: true,
         input,
         output,
@@ -40,6 +42,10 @@ pub fn write_comparison(
         events: &events,
         table: &table,
         plane: comparison.model.plane(),
+    };
+    Report {
+        title: &scenario.title,
+        shown: Shown::Tracking(&tracking),
         made,
     }
     .write_into(folder, within)

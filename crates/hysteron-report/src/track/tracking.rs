@@ -1,12 +1,8 @@
-//! What is reported, and its parts checked against each other.
+//! Runs of controllers, and their parts checked against each other.
 
-use super::view::View;
 use crate::error::ReportError;
-use crate::made::Made;
-use crate::stack::{self, Figures};
 use hysteron::control::Trace;
-use hysteron::{AtomicFolder, Destination, Plane, Quantity};
-use std::path::{Path, PathBuf};
+use hysteron::{Plane, Quantity};
 
 /// One controller's run.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +33,7 @@ pub struct TrackTable {
 /// ```
 /// use hysteron::control::{LoopStatus, Trace};
 /// use hysteron::{Plane, Quantity};
-/// use hysteron_report::{Made, NamedTrace, TrackReport, TrackTable};
+/// use hysteron_report::{Made, NamedTrace, Report, Shown, TrackTable, Tracking};
 ///
 /// let time: Vec<f64> = (0..200).map(|n| 0.1 * f64::from(n)).collect();
 /// let reference: Vec<f64> = time.iter().map(|t| t.sin()).collect();
@@ -53,8 +49,7 @@ pub struct TrackTable {
 ///     time,
 ///     reference,
 /// };
-/// let report = TrackReport {
-///     title: "a sine",
+/// let tracking = Tracking {
 ///     simulated: true,
 ///     input: Quantity::with_unit("temperature", "degC"),
 ///     output: Quantity::with_unit("displacement", "mm"),
@@ -63,17 +58,16 @@ pub struct TrackTable {
 ///     events: &[(10.0, "load 10 N".into())],
 ///     table: &TrackTable::default(),
 ///     plane: &Plane::new(20.0, 80.0, 10)?,
-///     made: Made::default(),
 /// };
+/// let shown = Shown::Tracking(&tracking);
+/// let report = Report { title: "a sine", shown, made: Made::default() };
 /// let folder = tempfile::tempdir()?;
 /// let written = report.write(folder.path())?;
 /// assert!(written[0].ends_with("index.html"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct TrackReport<'a> {
-    /// Heading of the page.
-    pub title: &'a str,
+pub struct Tracking<'a> {
     /// Whether the plant is simulated; every figure then says so.
     pub simulated: bool,
     /// The input of the hysteresis.
@@ -92,46 +86,11 @@ pub struct TrackReport<'a> {
     pub table: &'a TrackTable,
     /// The plane of the snapshots' weights.
     pub plane: &'a Plane,
-    /// How the report was made.
-    pub made: Made<'a>,
 }
 
-impl TrackReport<'_> {
-    /// Writes `index.html` and the figures `track-*.svg` and `track-*.png` into `dir`, which is
-    /// made if absent.
-    ///
-    /// Samples that are not finite leave gaps. What no run has (predictions, snapshots, reversals
-    /// of the reference) has no figure. The report appears whole or not at all. Files of an earlier
-    /// report are replaced or removed, those of others stay; a path alone as `dir` replaces these
-    /// too where they are in the way.
-    ///
-    /// Returns the paths written, the page first.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::NoRun`], [`ReportError::EmptyRun`], [`ReportError::RunLength`],
-    /// [`ReportError::Snapshot`] and [`ReportError::Row`] where the parts do not fit together,
-    /// before anything is written; [`ReportError::Write`] and [`ReportError::Raster`] name the file
-    /// that could not be made.
-    pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
-        stack::write_folder(dir, |folder, within| self.write_into(folder, within))
-    }
-
-    /// As [`TrackReport::write`], into the folder `within` another one that is being written.
-    ///
-    /// # Errors
-    ///
-    /// As [`TrackReport::write`].
-    pub fn write_into(
-        &self,
-        folder: &mut AtomicFolder,
-        within: &Path,
-    ) -> Result<Vec<PathBuf>, ReportError> {
-        self.check()?;
-        View::new(self).write(folder, within)
-    }
-
-    fn check(&self) -> Result<(), ReportError> {
+impl Tracking<'_> {
+    /// Whether the parts fit together.
+    pub(super) fn check(&self) -> Result<(), ReportError> {
         let first = self.runs.first().ok_or(ReportError::NoRun)?;
         let expected = first.trace.time.len();
         for NamedTrace { name, trace } in self.runs {

@@ -1,19 +1,19 @@
 //! Input and drive over time, with the status of the loop.
 
-use super::figure::Figure;
-use super::report::NamedTrace;
-use super::view::View;
+use super::cut::events;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::panel::{BELOW, Panel};
 use crate::draw::plot::Words;
-use crate::draw::sheet::{Drawing, Key, Sheet};
-use crate::draw::stretches::extent;
-use crate::draw::stretches::stretches;
+use crate::draw::shape::{Anchor, Rect};
+use crate::draw::sheet::{Key, Sheet};
+use crate::draw::stretches::{extent, stretches};
 use crate::draw::style::{FAINT, FOLLOWER, GRID, LABEL, REFERENCE};
 use crate::draw::text;
+use crate::figure::Figure;
 use crate::panels::{Heading, WIDTH, event_lines, height, stack};
-use crate::stack::Figures;
+use crate::quantity::Labelled;
+use crate::track::tracking::NamedTrace;
+use crate::track::view::View;
 use hysteron::control::{LoopStatus, Trace};
 
 /// Height of a row of the status strip.
@@ -39,41 +39,91 @@ const FLAGS: [(&str, &str, &str, Flag); 4] = [
     }),
 ];
 
-pub(super) fn input(view: &View<'_>) -> Option<Drawing> {
-    let asked = view
-        .report
-        .runs
-        .iter()
-        .flat_map(|run| &run.trace.command)
-        .any(|command| command.is_finite());
+/// What captions say of the status.
+const STRIP: &str = " The strip below a panel marks the samples at which the loop reported a drive \
+                     at its limit, a reference out of the model's reach or a fault of the sensor; \
+                     rows that no controller needs are left out.";
+
+pub(crate) fn input<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "track-input",
+        chapter: None,
+        width: WIDTH,
+        is_linked: true,
+        words: words_of_input,
+        draw: draw_input,
+    }
+}
+
+fn words_of_input(view: &View<'_>) -> Option<[String; 2]> {
+    let input = &view.input.name;
+    let strip = if view.has_drive() { "" } else { STRIP };
+    Some([
+        format!("{input} over time"),
+        format!(
+            "The {input} of the plant, over the wide line of the {input} that the controller asked \
+             for where it does so.{}{strip}",
+            events(view)
+        ),
+    ])
+}
+
+fn draw_input(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
+    let runs = view.tracking.runs.iter();
+    let any = |series: fn(&Trace) -> &[f64]| {
+        let mut values = runs.clone().flat_map(|run| series(run.trace));
+        values.any(|value| value.is_finite())
+    };
+    let asked = any(|trace| &trace.command);
     let mut keys = Vec::new();
     if asked {
         keys.push(Key::Line(REFERENCE, "commanded".into()));
     }
     keys.push(Key::Line(FOLLOWER, view.known().into()));
     let curves = |trace: &'_ Trace| [trace.command.clone(), trace.input.clone()];
-    let known = view.report.runs.iter().flat_map(|run| &run.trace.input);
-    let any = asked || known.into_iter().any(|input| input.is_finite());
-    any.then(|| figure(Figure::Input, view, keys, curves, !view.has_drive()))
+    let any = asked || any(|trace| &trace.input);
+    any.then(|| curves_and_status(view, sheet, &view.input, keys, curves, !view.has_drive()))
 }
 
-pub(super) fn drive(view: &View<'_>) -> Option<Drawing> {
+pub(crate) fn drive<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "track-drive",
+        chapter: None,
+        width: WIDTH,
+        is_linked: true,
+        words: words_of_drive,
+        draw: draw_drive,
+    }
+}
+
+fn words_of_drive(view: &View<'_>) -> Option<[String; 2]> {
+    Some([
+        format!("{} over time", view.drive.name),
+        format!(
+            "What each controller wrote to the device.{}{STRIP}",
+            events(view)
+        ),
+    ])
+}
+
+fn draw_drive(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let keys = vec![Key::Line(FOLLOWER, view.drive.name.clone())];
     let curves = |trace: &'_ Trace| [Vec::new(), trace.drive.clone()];
     view.has_drive()
-        .then(|| figure(Figure::Drive, view, keys, curves, true))
+        .then(|| curves_and_status(view, sheet, &view.drive, keys, curves, true))
 }
 
 /// Two curves of each run, the first pale beneath the second, and a strip with the status where
 /// `strip`.
-fn figure(
-    figure: Figure,
+fn curves_and_status(
     view: &View<'_>,
+    sheet: &mut Sheet,
+    quantity: &Labelled,
     mut keys: Vec<Key>,
     curves: impl Fn(&Trace) -> [Vec<f64>; 2],
     strip: bool,
-) -> Drawing {
-    let runs = view.report.runs;
+) -> f64 {
+    let runs = view.tracking.runs;
     let said = |flag: Flag| runs.iter().any(|run| run.trace.status.iter().any(flag));
     let flags: Vec<_> = FLAGS
         .into_iter()
@@ -84,13 +134,8 @@ fn figure(
             .iter()
             .map(|(_, words, colour, _)| Key::Area(colour, (*words).into())),
     );
-    let mut sheet = view.sheet(figure, WIDTH);
     sheet.legend(&keys);
     let drawn: Vec<[Vec<f64>; 2]> = runs.iter().map(|run| curves(run.trace)).collect();
-    let quantity = match figure {
-        Figure::Drive => &view.drive,
-        _ => &view.input,
-    };
     let y = Axis::new(
         quantity,
         Span::of(drawn.iter().flatten().flatten()).padded(0.05),
@@ -104,8 +149,8 @@ fn figure(
         rows => ROW * rows as f64 + 6.0,
     };
     let (panels, mut bottom) = stack(
-        &mut sheet,
-        view.report.events,
+        sheet,
+        view.tracking.events,
         &headings,
         [&view.time_axis, &y],
         height(runs.len()),
@@ -115,22 +160,22 @@ fn figure(
         let time = &run.trace.time;
         panel.curve(&mut sheet.canvas, time, beneath, &REFERENCE);
         panel.curve(&mut sheet.canvas, time, above, &FOLLOWER);
-        event_lines(&mut sheet, view.report.events, panel);
+        event_lines(sheet, view.tracking.events, panel);
         for (n, (word, _, colour, flag)) in flags.iter().enumerate() {
             let area = Rect {
                 y: panel.area.bottom() + 5.0 + ROW * n as f64,
                 height: ROW - 3.0,
                 ..panel.area
             };
-            row(&mut sheet, panel, run.trace, area, (word, colour, *flag));
+            row(sheet, panel, run.trace, area, (word, colour, *flag));
         }
     }
     if let Some(panel) = panels.last().filter(|_| room > 0.0) {
         let below = panel.area.bottom() + room;
-        time_below(&mut sheet, view, panel, below);
+        time_below(sheet, view, panel, below);
         bottom = below + BELOW + 4.0;
     }
-    view.finish(figure, sheet, bottom)
+    bottom
 }
 
 /// A row of the status strip over `area`: filled where the flag holds.

@@ -1,19 +1,19 @@
 //! How the weights change over time: the rows of the plane as a map, their sum and the offset as
 //! curves.
 
-use super::figure::Figure;
-use super::report::NamedTrace;
-use super::view::View;
+use super::cut::events;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::{Rect, Short, rect_data};
 use crate::draw::colour::of_share;
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
-use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
+use crate::draw::shape::{Rect, Short, rect_data};
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{FOLLOWER, MODELLED, ZERO};
+use crate::figure::Figure;
 use crate::panels::{HEADING, Heading, WIDTH, event_lines, head};
 use crate::plane::MINUS;
-use crate::stack::Figures;
+use crate::track::tracking::NamedTrace;
+use crate::track::view::View;
 use hysteron::Plane;
 use hysteron::control::Trace;
 use hysteron::operators;
@@ -73,8 +73,35 @@ impl Change {
     }
 }
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
-    let plane = view.report.plane;
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "track-weights",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(view: &View<'_>) -> Option<[String; 2]> {
+    let first = view.adapting().next()?.trace.snapshots.first()?;
+    Some([
+        "Adapted weights over time".into(),
+        format!(
+            "Change since the first snapshot of the total weight of the rows of the plane, which \
+             are the operators that a rising {} switches on at β; below, of the sum of all \
+             weights and of the offset. At the start the weights sum to {} and the offset is {}.{}",
+            view.input.name,
+            view.output.value(first.weights.iter().sum()),
+            view.output.value(first.offset),
+            events(view)
+        ),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
+    let plane = view.tracking.plane;
     let runs: Vec<(&NamedTrace<'_>, Change)> = view
         .adapting()
         .map(|run| (run, Change::of(run.trace, plane)))
@@ -104,7 +131,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         },
     );
 
-    let mut sheet = view.sheet(Figure::WeightsTime, WIDTH);
     let mut keys = vec![
         Key::Line(FOLLOWER, "sum of the weights".into()),
         Key::Line(MODELLED, "offset".into()),
@@ -125,7 +151,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
             name: run.name.to_owned(),
             remark: format!("{} snapshots", crate::number::count(change.time.len())),
         };
-        head(&mut sheet, &heading, area);
+        head(sheet, &heading, area);
         let labels = Labels { x: false, y: true };
         let panel = Panel::draw(
             &mut sheet.canvas,
@@ -134,8 +160,8 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
             beta.clone(),
             labels,
         );
-        map(&mut sheet, &panel, run.trace, change, span);
-        event_lines(&mut sheet, view.report.events, &panel);
+        map(sheet, &panel, run.trace, change, span);
+        event_lines(sheet, view.tracking.events, &panel);
         let bar = Rect {
             x: area.right() + BESIDE,
             width: BAR,
@@ -162,11 +188,11 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         panel.level(&mut sheet.canvas, 0.0, &ZERO);
         panel.curve(&mut sheet.canvas, &change.time, &change.sum, &FOLLOWER);
         panel.curve(&mut sheet.canvas, &change.time, &change.offset, &MODELLED);
-        event_lines(&mut sheet, view.report.events, &panel);
+        event_lines(sheet, view.tracking.events, &panel);
         bottom = below.bottom();
         area.y = bottom + 8.0;
     }
-    Some(view.finish(Figure::WeightsTime, sheet, bottom + BELOW + 4.0))
+    Some(bottom + BELOW + 4.0)
 }
 
 /// The rows over time: each snapshot stands until the next, the last until the run ends.

@@ -1,24 +1,43 @@
 //! The plane before and after: the weights of the first and the last snapshot, and what came and
 //! went.
 
-use super::figure::Figure;
-use super::view::View;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Drawing, Key, MARGIN};
+use crate::draw::shape::{Anchor, Rect};
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::LABEL;
+use crate::figure::Figure;
 use crate::panels::{HEADING, Heading, head};
 use crate::plane::{Half, axes};
-use crate::stack::Figures;
+use crate::track::view::View;
 
 /// Wider than a figure over time: three planes and two scales side by side.
 const WIDTH: f64 = 920.0;
 const GAP: f64 = 12.0;
 
-pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
-    let plane = view.report.plane;
+pub(crate) fn figure<'a>() -> Figure<View<'a>> {
+    Figure {
+        stem: "track-plane",
+        chapter: None,
+        width: WIDTH,
+        is_linked: false,
+        words,
+        draw,
+    }
+}
+
+fn words(_: &View<'_>) -> Option<[String; 2]> {
+    Some([
+        "The plane before and after".into(),
+        "The weights of the first and the last snapshot on one scale, and their difference on its \
+         own."
+            .into(),
+    ])
+}
+
+fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
+    let plane = view.tracking.plane;
     let runs: Vec<(&str, [Half; 3])> = view
         .adapting()
         .filter_map(|run| {
@@ -48,7 +67,6 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     ];
     let largest = spans.map(Span::largest);
 
-    let mut sheet = view.sheet(Figure::BeforeAfter, WIDTH);
     let mut keys = Vec::new();
     let negative = spans.iter().any(|span| span.low < 0.0);
     keys.extend(negative.then(|| Key::Text("cells with − : below zero".into())));
@@ -81,7 +99,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
                 name: title.into(),
                 remark: String::new(),
             };
-            head(&mut sheet, &heading, area);
+            head(sheet, &heading, area);
             let labels = Labels {
                 x: row + 1 == runs.len(),
                 y: n == 0,
@@ -103,5 +121,5 @@ pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
         }
         top += side + 6.0;
     }
-    Some(view.finish(Figure::BeforeAfter, sheet, top - 6.0 + BELOW + 4.0))
+    Some(top - 6.0 + BELOW + 4.0)
 }
