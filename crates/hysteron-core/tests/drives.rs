@@ -38,7 +38,7 @@ fn a_missed_target_is_beyond_the_outputs_at_rest_or_limited() {
             false => (plane.bottom() - plane.step(), off),
         };
         let end = stages.axis.backward(&plane, loaded, end);
-        let input = owned.body.map_or(end, |body| body.hold(end));
+        let input = owned.body().map_or(end, |body| body.hold(end));
         let (mut state, mut memory) = (state, StageState::default());
         let sample = Sample {
             input,
@@ -48,7 +48,7 @@ fn a_missed_target_is_beyond_the_outputs_at_rest_or_limited() {
         stages
             .step(&model, &mut state, &mut memory, sample)
             .unwrap();
-        let gain = loaded.gain * stages.creep.gain();
+        let gain = loaded.gain * stages.behind.creep.gain();
         for _ in 0..20 {
             let tolerance = 0.01 * gain * (on - off) * rng.random::<f64>();
             // Within the tolerance beyond an end, beyond that too, or anywhere within.

@@ -15,7 +15,7 @@ fn drive(rng: &mut StdRng, owned: &Owned<f64>, plane: &Plane<f64>, load: Option<
     let input = plane.bottom() + rng.random::<f64>() * (plane.max() - plane.bottom());
     let temperature = axis.backward(plane, axis.load.at(load).unwrap(), input);
     owned
-        .body
+        .body()
         .map_or(temperature, |body| body.hold(temperature))
 }
 
@@ -263,7 +263,7 @@ fn the_units_do_not_matter() {
             let tolerance = [0.0, 0.01 * (high - low)][rng.random_range(0..2)];
             let ends = [0, 1].map(|_| drive(&mut rng, &constants, &plane, now));
             let range = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            let hold = |drive| constants.body.map_or(drive, |body| body.rest(drive));
+            let hold = |drive| constants.body().map_or(drive, |body| body.rest(drive));
             let stays = (hold(range.0), hold(range.1));
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
             let wanted = Wanted {

@@ -231,8 +231,8 @@ pub(crate) struct Simulate {
     /// with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
-    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
-    /// creep or a lag
+    /// Column of time, in seconds or with its unit in its name, for a model that depends on
+    /// time
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first row
@@ -271,8 +271,8 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
-    /// creep or a lag
+    /// Column of time, in seconds or with its unit in its name, for a model that depends on
+    /// time
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first row

@@ -2,10 +2,10 @@
 
 use super::reference::Number;
 use super::walks;
-use hysteron::{LoadPart, Model, Operator, Sign};
+use hysteron::{LoadPart, Model, Operator, Sign, StageConstants};
 use hysteron_core::{
-    Axis, Body, Creep, Direction, Load, Plane, Rates, StageState, Stages, State, Target, Turn,
-    Wanted, mix, table_len, turn_capacity,
+    Constant, Direction, Plane, Rates, StageState, Stages, State, Target, Turn, Wanted, mix,
+    table_len, turn_capacity,
 };
 use hysteron_export::{COptions, CReal, CSampling, c_texts};
 use rand::RngExt;
@@ -255,64 +255,26 @@ pub fn calls(rng: &mut StdRng, case: &Case, count: usize) -> Vec<Call> {
 
 /// The numbers of the stages in the number type.
 struct Numbers<T> {
-    body: Option<Body<T>>,
-    load: [Vec<T>; 5],
-    spacing: Vec<T>,
-    creep: [Vec<T>; 2],
-    lag: T,
+    constants: StageConstants<T>,
     offset: T,
     falling: bool,
 }
 
 impl<T: Number> Numbers<T> {
     fn of(model: &Model) -> Self {
-        let stages = model.stages();
-        let all = |numbers: &[f64]| numbers.iter().map(|&x| T::of(x)).collect::<Vec<T>>();
-        let load = stages.axis.load;
+        let convert = |_: &Constant, x| Ok::<_, ()>(T::of(x));
         Self {
-            body: stages.body.map(|body| Body {
-                ambient: T::of(body.ambient),
-                gain: T::of(body.gain),
-                tau_heating: T::of(body.tau_heating),
-                tau_cooling: T::of(body.tau_cooling),
-            }),
-            load: [
-                load.loads,
-                load.shifts,
-                load.scales,
-                load.gains,
-                load.offsets,
-            ]
-            .map(all),
-            spacing: all(stages.axis.spacing),
-            creep: [stages.creep.coefficients, stages.creep.taus].map(all),
-            lag: T::of(stages.lag),
-            offset: T::of(stages.offset),
+            constants: model.constants().map(convert).unwrap(),
+            offset: T::of(model.offset()),
             falling: model.sign() == Sign::Negative,
         }
     }
 
     fn stages(&self) -> Stages<'_, T> {
-        let [loads, shifts, scales, gains, offsets] = &self.load;
         Stages {
-            body: self.body,
-            axis: Axis {
-                load: Load {
-                    loads,
-                    shifts,
-                    scales,
-                    gains,
-                    offsets,
-                },
-                spacing: &self.spacing,
-            },
-            creep: Creep {
-                coefficients: &self.creep[0],
-                taus: &self.creep[1],
-            },
-            lag: self.lag,
             offset: self.offset,
             falling: self.falling,
+            ..self.constants.stages()
         }
     }
 }

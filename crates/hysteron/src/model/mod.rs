@@ -1,18 +1,18 @@
 //! The model of an actuator: operators, the stages in front of them, and a record of how they were
 //! identified.
 //!
-//! `operators` are the weighted operators; `body`, `load` and `after` are the constants of the
+//! `operators` are the weighted operators; `body`, `load` and `constants` are those of the
 //! stages around them, and `stages` hands them to the core. `state` moves a model sample by sample
 //! from its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it
 //! (`policy` says how). `band` is the interval around the output, and `bounds` where it may really be. `file` reads and writes models;
 //! `summary`, `smooth`, `validation`, `confidence` and `excitation` are the record of the
 //! fit.
 
-mod after;
 mod band;
 mod body;
 mod bounds;
 mod confidence;
+mod constants;
 mod excitation;
 mod file;
 mod inverse;
@@ -30,14 +30,13 @@ mod surroundings;
 mod validation;
 mod within;
 
-pub(crate) use after::After;
-pub use after::CreepTerm;
 pub(crate) use band::add_variance;
 pub use band::{Band, BandEvaluation};
 pub use body::FirstOrder;
 pub(crate) use body::needs_time;
 pub use bounds::Bounds;
 pub use confidence::{Confidence, INTERVAL};
+pub use constants::{CreepTerm, StageConstants};
 pub use excitation::Excitation;
 #[cfg(feature = "data")]
 pub(crate) use file::{FORMAT, no_model};
@@ -98,8 +97,8 @@ pub struct Model {
     pub drive: Option<(f64, f64)>,
     /// The inputs at the corners of the grid; empty for equal distances.
     spacing: Vec<f64>,
-    /// Creep and lag.
-    after: after::After,
+    /// The constants of the stages behind the operators.
+    behind: StageConstants<f64>,
     /// The state found before the first sample fitted.
     start: Option<FittedStart>,
     /// How the model was obtained, if it was identified.
@@ -117,7 +116,7 @@ impl From<Operators> for Model {
             thermal: None,
             drive: None,
             spacing: Vec::new(),
-            after: after::After::default(),
+            behind: StageConstants::default(),
             start: None,
             fit: None,
         }
@@ -209,7 +208,7 @@ impl Model {
     }
 
     /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`
-    /// ([`State::input`]), to the last bit. Body, creep and lag are at rest with the next sample.
+    /// ([`State::input`]), to the last bit. The stages are at rest with the next sample.
     ///
     /// # Errors
     /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.

@@ -2,8 +2,7 @@
 //! on such a recording, and its result goes back between the stages.
 
 use crate::error::{Error, Result};
-use crate::model::after::After;
-use crate::model::{FirstOrder, LoadCurves, Model, Operators, Surroundings};
+use crate::model::{FirstOrder, LoadCurves, Model, Operators, StageConstants, Surroundings};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use std::borrow::Cow;
@@ -15,7 +14,7 @@ pub(crate) struct Found {
     pub(crate) drive: Option<(f64, f64)>,
     pub(crate) curves: Option<LoadCurves>,
     pub(crate) spacing: Vec<f64>,
-    pub(crate) after: After,
+    pub(crate) behind: StageConstants<f64>,
 }
 
 impl Model {
@@ -31,7 +30,7 @@ impl Model {
     }
 
     /// The recording as [`Model::within`] sees it: its input behind body, load and spacing, its
-    /// output before creep and lag. For a model at one load.
+    /// output in front of the stages behind the operators. For a model at one load.
     ///
     /// # Errors
     /// As [`Model::run_in`]; [`Error::Thermal`] where time stands still and the model has a lag.
@@ -45,7 +44,7 @@ impl Model {
         let around = Surroundings::of(self, recording);
         Ok(Cow::Owned(Recording {
             input: self.seen(&recording.input, around)?.into_owned(),
-            output: self.before_creep(recording)?,
+            output: self.before_stages(recording)?,
             load: None,
             ..recording.clone()
         }))
@@ -59,11 +58,10 @@ impl Model {
             load.curves = found.curves;
         }
         self.spacing = found.spacing;
-        self.after = found.after;
-        // The weights were fitted to outputs without creep, whose offset did not creep either.
-        let gain = self.after.creep().gain();
-        if gain != 1.0 {
-            let offset = gain * self.offset();
+        self.behind = found.behind;
+        // The weights were fitted to what is in front of these stages, and so was the offset.
+        let offset = self.stages().behind.settled(self.offset());
+        if offset != self.offset() {
             let (operator, plane) = (self.operator(), *self.plane());
             let weights = self.weights().to_vec();
             self.operators = Operators::new(operator, plane, weights, offset, self.sign())?;
@@ -80,10 +78,10 @@ impl Model {
         model
     }
 
-    /// The measured output without creep and lag: what the operators must have given.
-    pub(crate) fn before_creep(&self, recording: &Recording) -> Result<Vec<f64>> {
+    /// The measured output in front of the stages behind the operators: what these must have given.
+    pub(crate) fn before_stages(&self, recording: &Recording) -> Result<Vec<f64>> {
         let stages = self.stages();
-        if self.after.is_none() {
+        if self.behind.is_none() {
             return Ok(recording.output.clone());
         }
         let time = recording

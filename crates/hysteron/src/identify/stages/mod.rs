@@ -1,7 +1,7 @@
 //! Identifies the stages around the operators, together with the weights.
 //!
 //! `body` is the thermal body, `load` the shift by the load, `spacing` the place of the levels,
-//! `after` creep and lag. Each finds its constants and hands on recordings as the next stage sees
+//! `after` those behind the operators. Each finds its constants and hands on recordings as the next stage sees
 //! them. `nelder_mead` is the search of the body.
 
 mod after;
@@ -88,7 +88,7 @@ pub(crate) fn fit(
         let (after, report) = after::find(&seen, &options, progress)?;
         notes.insert("after".to_owned(), json!(report));
         seen = Cow::Owned(after::before(&after, &seen)?);
-        found.after = after;
+        found.behind = after;
     }
     let model = fit_weights_without(&seen, &options, asked.outliers, progress)?;
     let mut model = model.with_stages(found)?;
