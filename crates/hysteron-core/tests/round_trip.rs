@@ -67,6 +67,8 @@ fn outputs_of_the_chain_are_met_by_its_inverse() {
             constants.lag = 0.0;
             constants.offset = 0.0;
             for list in [
+                &mut constants.sums,
+                &mut constants.outputs,
                 &mut constants.coefficients,
                 &mut constants.taus,
                 &mut constants.loads,
@@ -201,6 +203,8 @@ impl Units {
             gains: all(&constants.gains, self.output / self.sum),
             offsets: all(&constants.offsets, self.output),
             spacing: all(&constants.spacing, self.effective),
+            sums: all(&constants.sums, self.output),
+            outputs: all(&constants.outputs, self.output),
             coefficients: constants.coefficients.clone(),
             taus: all(&constants.taus, self.time),
             lag: constants.lag * self.time,

@@ -272,6 +272,7 @@ impl Parts {
             behind: Behind {
                 creep: if self.creep { creep } else { Creep::NONE },
                 lag: Lag { tau: self.lag },
+                ..Behind::NONE
             },
             offset: 1.5,
             falling: self.falling,

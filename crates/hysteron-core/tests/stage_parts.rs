@@ -78,6 +78,7 @@ fn rates_are_exponentials() {
                 taus: &[0.7, 5.0],
             },
             lag: Lag { tau: 0.3 },
+            ..Behind::NONE
         },
         ..Stages::NONE
     };
@@ -104,6 +105,7 @@ fn states_are_saved_as_numbers() {
                 taus: &[0.7, 5.0, 9.0, 20.0],
             },
             lag: Lag { tau: 0.3 },
+            ..Behind::NONE
         },
         ..Stages::NONE
     };

@@ -30,7 +30,7 @@
 #define HYS_MOST_PARTS 8
 
 /* Stages behind the operators: how many there are, numbers that they remember, and factors. */
-#define HYS_BEHIND 2
+#define HYS_BEHIND 3
 #define HYS_BEHIND_MEMORY 5
 #define HYS_BEHIND_FACTORS 5
 
@@ -80,6 +80,7 @@ typedef struct {
     hys_list loads;              /* loads at which the curves are known, ascending */
     hys_list shifts, scales, gains, offsets; /* the curves at these loads */
     hys_list spacing;            /* the K + 1 corners of the grid, ascending */
+    hys_list curve_sums, curve_outputs; /* knots of the output curve, ascending */
     hys_list creep;              /* the share of the sum that creeps, of each term */
     hys_list start;              /* turning points that the model starts with */
     const hys_parts *parts;      /* weights that depend on the load; null without */
@@ -91,6 +92,7 @@ typedef struct {
     hys_real factors[HYS_BEHIND_FACTORS]; /* e^(-dt/tau) of the stages behind the operators */
     hys_real slopes[HYS_BEHIND]; /* the steepest slope at rest of each of them */
     hys_real steepest_behind;    /* and of all of them */
+    hys_real size_behind;        /* the size of the numbers that they add to the output's */
     hys_real offset;             /* output where the operators' sum is zero */
     hys_real drive_min, drive_max; /* range of the drive, where it is limited */
     unsigned char body;          /* 1 with a body */

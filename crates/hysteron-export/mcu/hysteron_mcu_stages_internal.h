@@ -37,35 +37,6 @@ static inline hys_real offset_of(const hys_actuator_state *state)
     return state->mixed == NULL ? state->actuator->offset : state->mixed->offset;
 }
 
-/* The linear piece for x: between knots k and k + 1. Beyond the ends it is the outermost one. */
-static inline size_t piece(const hys_real *knots, size_t count, hys_real x)
-{
-    size_t low = 0u, high = count;
-    while (low < high) { /* at most log2(count) + 1 iterations */
-        size_t middle = low + (high - low) / 2u;
-        if (knots[middle] <= x) {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    if (low == 0u) {
-        return 0u;
-    }
-    return low == count ? count - 2u : low - 1u;
-}
-
-/* The line between two knots. At a knot it is exact. */
-static inline hys_real line(hys_real x, hys_real x0, hys_real x1, hys_real y0, hys_real y1)
-{
-    hys_real slope;
-    if (x == x1) {
-        return y1;
-    }
-    slope = (y1 - y0) / (x1 - x0);
-    return y0 + (x - x0) * slope;
-}
-
 /* A curve at a load within the range, or `none` without the curve. */
 static inline hys_real curve(const hys_list *loads, const hys_list *values, hys_real none,
                              hys_real load)

@@ -221,7 +221,8 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     gain = at.gain * actuator->steepest_behind;
     rounding = gain * (model->rounding + model->total * (slack / model->step));
     error = hys_max(reached - target, target - reached);
-    offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target);
+    offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target)
+        + actuator->size_behind;
     low = behind_settled(actuator, at.gain * own_sum(model, ZERO));
     high = behind_settled(actuator, at.gain * own_sum(model, model->total));
     most = (high - low) * THOUSANDTH;

@@ -325,7 +325,7 @@ impl<'a, T: Real> Constants<'a, T> for Axis<'a, T> {
 
 /// The piecewise linear function with the values `y(k)` at `xs[k]`. Beyond the ends it goes on
 /// with the slope of the outermost piece. At a knot it is exact.
-fn between<T: Real>(xs: &[T], y: impl Fn(usize) -> T, x: T) -> T {
+pub(crate) fn between<T: Real>(xs: &[T], y: impl Fn(usize) -> T, x: T) -> T {
     let last = xs.len() - 1;
     if last == 0 {
         return y(0);

@@ -6,8 +6,9 @@
 
 use crate::scalar::Real;
 use crate::stages::constant::{Constants, Declared};
-use crate::stages::{creep, lag};
+use crate::stages::{creep, curve, lag};
 use creep::Creep;
+use curve::Curve;
 use lag::Lag;
 
 /// A stage behind the operators. It turns their sum, or what the stage before made of it, into
@@ -39,6 +40,10 @@ pub(crate) trait Stage<T: Real> {
     fn slope(&self, factors: &Self::Factors, x: T) -> T {
         let _ = x;
         self.steepest(factors)
+    }
+    /// The size of the numbers that it adds to its output, whose rounding the output then has.
+    fn size(&self) -> T {
+        T::ZERO
     }
 }
 
@@ -219,6 +224,20 @@ macro_rules! behind {
                 self.steepest(&Factors::default())
             }
 
+            /// The size of the numbers that the output is made from, beside the sum.
+            #[must_use]
+            pub fn size(&self) -> $t {
+                let size = $t::ZERO;
+                $(let size = match self.$stage.is_there() {
+                    true => {
+                        let steepest = self.$stage.steepest(&Factors::<$t>::default().$stage);
+                        size * steepest + self.$stage.size()
+                    }
+                    false => size,
+                };)+
+                size
+            }
+
             /// The slope of the output at the sum `x` in a sample. Factors as for
             /// [`Self::forward`].
             pub(crate) fn slope(
@@ -250,6 +269,7 @@ macro_rules! behind {
 behind! {
     /// The stages behind the operators, in the order in which they act.
     Behind<'a, T> {
+        curve: Curve<'a, T>,
         creep: Creep<'a, T>,
         lag: Lag<T>,
     }

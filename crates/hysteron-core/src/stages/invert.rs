@@ -183,6 +183,7 @@ impl<T: Real> Stages<'_, T> {
         let error = (reached - target.output).max(target.output - reached);
         let magnitude = |v: T| v.max(-v);
         let offsets = magnitude(self.offset) + magnitude(loaded.offset) + magnitude(target.output);
+        let offsets = offsets + self.behind.size();
         let spread = T::from_index(8) * T::EPSILON * offsets;
         let (off, on) = model.output_range();
         let ends = [off, on].map(|sum| self.behind.settled(loaded.gain * sum));

@@ -14,6 +14,8 @@ pub struct Constants {
     pub gains: Vec<f64>,
     pub offsets: Vec<f64>,
     pub spacing: Vec<f64>,
+    pub sums: Vec<f64>,
+    pub outputs: Vec<f64>,
     pub coefficients: Vec<f64>,
     pub taus: Vec<f64>,
     pub lag: f64,
@@ -45,6 +47,11 @@ impl Constants {
         } else {
             0
         };
+        let knots = if rng.random() {
+            rng.random_range(2..8)
+        } else {
+            0
+        };
         let mut numbers = |count: usize, low: f64, high: f64| -> Vec<f64> {
             (0..count).map(|_| rng.random_range(low..high)).collect()
         };
@@ -72,6 +79,8 @@ impl Constants {
                 true => ascending(rng, corners, plane.bottom(), span),
                 false => Vec::new(),
             },
+            sums: ascending(rng, knots, -2.0, 12.0),
+            outputs: ascending(rng, knots, -1.0, 8.0),
             coefficients,
             taus,
             lag: if rng.random() { lag } else { 0.0 },
@@ -94,6 +103,8 @@ impl Constants {
             "gains" => &self.gains,
             "offsets" => &self.offsets,
             "spacing" => &self.spacing,
+            "curve_sums" => &self.sums,
+            "curve_outputs" => &self.outputs,
             "creep" => &self.coefficients,
             "creep_taus" => &self.taus,
             "lag" => std::slice::from_ref(&self.lag),

@@ -171,7 +171,7 @@ impl<T: Number> Constants<T> {
                 {
                     let lists = 1 + staged.arrays().count();
                     let core = staged.core(self);
-                    let numbers = 8 + RATE_NUMBERS + core.behind.slopes().count();
+                    let numbers = 9 + RATE_NUMBERS + core.behind.slopes().count();
                     aligned(aligned((3 + 2 * lists) * WORD) + numbers * T::BYTES + 3)
                 } + staged
                     .parts

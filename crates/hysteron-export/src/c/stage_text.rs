@@ -130,7 +130,7 @@ pub(super) fn actuator<T: Number>(
     text
 }
 
-fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static str, T); 10] {
+fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static str, T); 11] {
     let single = |name: &str| staged.constants.get(name).first().copied();
     let (low, high) = staged.drive.unwrap_or((T::ZERO, T::ZERO));
     let start = constants.start.as_ref().map(|(_, input)| *input);
@@ -142,6 +142,7 @@ fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static
         ("heating", staged.rates[0]),
         ("cooling", staged.rates[1]),
         ("steepest_behind", staged.gain),
+        ("size_behind", staged.size),
         ("offset", constants.offset),
         ("drive_min", low),
         ("drive_max", high),

@@ -34,6 +34,8 @@ pub(super) struct Staged<T> {
     pub(super) rates: [T; RATE_NUMBERS],
     /// The gain at rest of the stages behind the operators.
     pub(super) gain: T,
+    /// The size of the numbers that they add to the output's.
+    pub(super) size: T,
     /// Levels per corner, where they are closest, in units of the plane's axis.
     pub(super) steepest: T,
     /// The range of the drive, where there is one.
@@ -76,6 +78,7 @@ impl<T: Number> Staged<T> {
             constants: all.map(of_stage)?,
             rates: [T::ZERO; RATE_NUMBERS],
             gain: T::ONE,
+            size: T::ZERO,
             steepest: T::ONE,
             drive,
             parts: Parts::of(model, constants)?,
@@ -83,7 +86,7 @@ impl<T: Number> Staged<T> {
         let core = staged.core(constants);
         core.check(&constants.core)
             .map_err(|error| unfit(&error.to_string()))?;
-        let gain = core.behind.steepest_at_rest();
+        let (gain, size) = (core.behind.steepest_at_rest(), core.behind.size());
         let rates = match sampling.dt {
             Some(dt) => core.rates(number("a sample time", dt)?).to_numbers(),
             None => staged.rates,
@@ -92,7 +95,8 @@ impl<T: Number> Staged<T> {
         let corners = core.axis.spacing.windows(2);
         let slopes = corners.map(|pair| step / (pair[1] - pair[0]));
         let steepest = slopes.reduce(Real::max).unwrap_or(T::ONE);
-        (staged.gain, staged.rates, staged.steepest) = (gain, rates, steepest);
+        (staged.gain, staged.size) = (gain, size);
+        (staged.rates, staged.steepest) = (rates, steepest);
         Ok(Some(staged))
     }
 

@@ -121,6 +121,14 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
         file["lag"] = tau(rng).into();
     }
     if coin(rng) {
+        let knots = rng.random_range(2..7);
+        file["version"] = 3.into();
+        file["stages"] = json!({
+            "curve_sums": sorted(rng, knots, -1.0, 9.0),
+            "curve_outputs": sorted(rng, knots, 2.0, 30.0),
+        });
+    }
+    if coin(rng) {
         let mut state = plain.start();
         let inputs: Vec<f64> = (0..9).map(|_| rng.random_range(low..high)).collect();
         plain.run(&mut state, &inputs, &mut [0.0; 9]).unwrap();

@@ -156,6 +156,10 @@ impl Model {
         if let Some(load) = &self.load {
             return Err(load.one_is_needed());
         }
+        if !self.behind.is_none() {
+            let what = "the model has a stage behind its operators, which this cannot have";
+            return Err(Error::Fit(what.into()));
+        }
         if !self.spacing.is_empty() {
             let what = "the model's levels are not at equal distances, which this needs";
             let remedy = Remedy::new("fit with {}", [Setting::word("spacing", "uniform")]);
@@ -194,17 +198,20 @@ impl Model {
         self.operators.sign()
     }
 
-    /// The outputs with every operator off and with every operator on, in the output's unit.
+    /// The outputs with every operator off and with every operator on, in the output's unit. Of the
+    /// stages behind the operators, those that depend on time have no part in it.
     #[must_use]
     pub fn output_range(&self) -> (f64, f64) {
-        self.operators.output_range()
+        let (off, on) = self.operators.output_range();
+        (self.untimed(off), self.untimed(on))
     }
 
     /// The default tolerance for targets: [`crate::NOISE`] times the output's range. Smaller
     /// reversals of a target count as noise.
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
-        self.operators.usual_tolerance()
+        let (off, on) = self.output_range();
+        crate::NOISE * (on - off).abs()
     }
 
     /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`

@@ -98,6 +98,46 @@ impl Model {
         self.behind.lag()
     }
 
+    /// The output of the stages behind the operators that do not depend on time, for an output of
+    /// the operators.
+    pub(crate) fn untimed(&self, output: f64) -> f64 {
+        if self.behind.is_none() {
+            return output;
+        }
+        let sign = self.sign().factor();
+        let sum = sign * (output - self.offset());
+        self.offset() + sign * self.stages().behind.untimed(sum)
+    }
+
+    /// The same model with other constants of the stages behind the operators, by their names.
+    ///
+    /// ```
+    /// # use hysteron::{Model, Operator, Plane, Sign};
+    /// # let plane = Plane::new(1.0, 2.0, 2)?;
+    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// let knots = [("curve_sums", vec![0.0, 1.0, 3.0]), ("curve_outputs", vec![0.0, 4.0, 5.0])];
+    /// let model = model.with_behind(knots)?;
+    /// assert_eq!(model.step(&mut model.start(), 2.0)?.output, 5.0); // of a sum of 3
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Core`] as [`StageConstants::new`], and for a constant out of its range.
+    pub fn with_behind<N: AsRef<str>>(
+        mut self,
+        named: impl IntoIterator<Item = (N, Vec<f64>)>,
+    ) -> Result<Self> {
+        let constants = self.behind.with(named)?;
+        // What stands in front of the operators has fields of its own.
+        let behind = constants.stages().behind;
+        self.behind = StageConstants::of(&Stages {
+            behind,
+            ..Stages::NONE
+        });
+        self.check_stages()?;
+        Ok(self)
+    }
+
     /// The same model with creep and lag after the operators.
     ///
     /// # Errors
