@@ -125,7 +125,7 @@ pub struct CExport {
     /// outputs. Zero without an inverse.
     pub rounding: f64,
     /// The stages around the operators, in the order of the signal: `body`, `load`, `spacing`,
-    /// `creep`, `lag`.
+    /// and so on.
     pub stages: Vec<&'static str>,
     /// The sample time in seconds that the constants hold for, where the model depends on time.
     pub dt: Option<f64>,

@@ -28,6 +28,30 @@ impl<T: Real> Curve<'_, T> {
         outputs: &[],
     };
 
+    /// The output at a sum of the operators.
+    ///
+    /// ```
+    /// use hysteron_core::Curve;
+    /// let curve = Curve { sums: &[0.0, 1.0, 3.0], outputs: &[0.0, 4.0, 5.0] };
+    /// assert_eq!((curve.at(2.0), curve.slope_at(2.0)), (4.5, 0.5));
+    /// ```
+    #[must_use]
+    pub fn at(&self, sum: T) -> T {
+        match self.sums {
+            [] => sum,
+            sums => between(sums, |k| self.outputs[k], sum),
+        }
+    }
+
+    /// The slope at a sum of the operators.
+    #[must_use]
+    pub fn slope_at(&self, sum: T) -> T {
+        let above = self.sums.partition_point(|knot| *knot <= sum);
+        let last = self.sums.len().saturating_sub(2);
+        let piece = above.saturating_sub(1).min(last);
+        self.slopes().nth(piece).unwrap_or(T::ONE)
+    }
+
     /// The slope of each piece.
     fn slopes(&self) -> impl Iterator<Item = T> {
         let pieces = self.sums.windows(2).zip(self.outputs.windows(2));
@@ -114,7 +138,7 @@ impl<T: Real> Stage<T> for Curve<'_, T> {
     }
 
     fn settled(&self, sum: T) -> T {
-        between(self.sums, |k| self.outputs[k], sum)
+        self.at(sum)
     }
 
     fn steepest(&self, _: &Factors<T>) -> T {
@@ -122,10 +146,7 @@ impl<T: Real> Stage<T> for Curve<'_, T> {
     }
 
     fn slope(&self, _: &Factors<T>, sum: T) -> T {
-        let above = self.sums.partition_point(|knot| *knot <= sum);
-        let last = self.sums.len().saturating_sub(2);
-        let piece = above.saturating_sub(1).min(last);
-        self.slopes().nth(piece).unwrap_or(T::ONE)
+        self.slope_at(sum)
     }
 
     fn size(&self) -> T {

@@ -34,7 +34,11 @@ impl<'a, T: Real> Constants<'a, T> for Lag<T> {
     }];
 
     fn lists(&self) -> impl Iterator<Item = &[T]> {
-        [core::slice::from_ref(&self.tau)].into_iter()
+        let list = match self.tau != T::ZERO {
+            true => core::slice::from_ref(&self.tau),
+            false => &[],
+        };
+        [list].into_iter()
     }
 
     fn of_lists(mut next: impl FnMut() -> &'a [T]) -> Option<Self> {

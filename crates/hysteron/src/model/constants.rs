@@ -51,8 +51,7 @@ impl<T: Real> StageConstants<T> {
             lists[place.ok_or(Error::Stage { stage: "stages" })?] = numbers;
         }
         let constants = Self { lists };
-        constants.built()?;
-        Ok(constants.or_none())
+        Ok(Self::of(&constants.built()?))
     }
 
     /// The constants of these stages.

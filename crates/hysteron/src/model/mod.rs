@@ -53,7 +53,7 @@ pub use state::{Sample, State};
 pub use summary::{FitSummary, Outlier, SeenFile, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Criterion, RivalScore, Score, Validation};
-pub(crate) use within::Found;
+pub(crate) use within::{Bend, Found};
 
 use crate::error::{Error, Result};
 use crate::recording::Quantity;

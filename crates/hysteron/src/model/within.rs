@@ -2,9 +2,10 @@
 //! on such a recording, and its result goes back between the stages.
 
 use crate::error::{Error, Result};
-use crate::model::{FirstOrder, LoadCurves, Model, Operators, StageConstants, Surroundings};
+use crate::model::{FirstOrder, LoadCurves, Model, Operators, Sign, StageConstants, Surroundings};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use hysteron_core::Curve;
 use std::borrow::Cow;
 
 /// The stages that a fit found.
@@ -15,6 +16,36 @@ pub(crate) struct Found {
     pub(crate) curves: Option<LoadCurves>,
     pub(crate) spacing: Vec<f64>,
     pub(crate) behind: StageConstants<f64>,
+    pub(crate) curve: Option<Bend>,
+}
+
+/// A curve from the output of the operators, in its unit and with its sign, to the output.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Bend {
+    pub(crate) sums: Vec<f64>,
+    pub(crate) outputs: Vec<f64>,
+}
+
+impl Bend {
+    pub(crate) fn core(&self) -> Curve<'_, f64> {
+        Curve {
+            sums: &self.sums,
+            outputs: &self.outputs,
+        }
+    }
+
+    /// The curve over the operators' sum `h` alone, where these give `offset + sign · h`: the offset
+    /// of the output, sums and outputs.
+    pub(crate) fn anchored(&self, offset: f64, sign: Sign) -> (f64, Vec<f64>, Vec<f64>) {
+        let (sign, base) = (sign.factor(), self.core().at(offset));
+        let mut sums: Vec<f64> = self.sums.iter().map(|h| sign * (h - offset)).collect();
+        let mut outputs: Vec<f64> = self.outputs.iter().map(|y| sign * (y - base)).collect();
+        if sign < 0.0 {
+            sums.reverse();
+            outputs.reverse();
+        }
+        (base, sums, outputs)
+    }
 }
 
 impl Model {
@@ -58,16 +89,24 @@ impl Model {
             load.curves = found.curves;
         }
         self.spacing = found.spacing;
+        let (offset, sign) = (self.offset(), self.sign());
+        let anchored = found.curve.map(|curve| curve.anchored(offset, sign));
+        let offset = anchored.as_ref().map_or(offset, |(offset, ..)| *offset);
         self.behind = found.behind;
         // The weights were fitted to what is in front of these stages, and so was the offset.
-        let offset = self.stages().behind.settled(self.offset());
+        let offset = self.stages().behind.settled(offset);
         if offset != self.offset() {
             let (operator, plane) = (self.operator(), *self.plane());
             let weights = self.weights().to_vec();
             self.operators = Operators::new(operator, plane, weights, offset, self.sign())?;
         }
         self.check_stages()?;
-        Ok(self)
+        match anchored {
+            None => Ok(self),
+            Some((_, sums, outputs)) => {
+                self.with_behind([("curve_sums", sums), ("curve_outputs", outputs)])
+            }
+        }
     }
 
     /// The same stages around other operators.
