@@ -41,6 +41,12 @@ pub(crate) trait Stage<T: Real> {
         let _ = x;
         self.steepest(factors)
     }
+    /// How many roundings of its output are in the output at most, because what it remembers is
+    /// rounded in each sample.
+    fn drift(&self, factors: &[T]) -> T {
+        let _ = factors;
+        T::ZERO
+    }
     /// The size of the numbers that it adds to its output, whose rounding the output then has.
     fn size(&self) -> T {
         T::ZERO
@@ -216,6 +222,26 @@ macro_rules! behind {
                     false => slope,
                 };)+
                 slope
+            }
+
+            /// How many roundings of the output are in it at most, because what stages remember is
+            /// rounded in each sample of a time step with these factors ([`Rates::to_numbers`]
+            /// without the first two).
+            ///
+            /// [`Rates::to_numbers`]: crate::Rates::to_numbers
+            #[must_use]
+            pub fn drift(&self, factors: &[$t; FACTORS]) -> $t {
+                let (drift, rest) = ($t::ZERO, &factors[..]);
+                $(
+                    let count = size_of::<$stage::Factors<u8>>();
+                    let (own, rest) = rest.split_at(count.min(rest.len()));
+                    let drift = match self.$stage.is_there() {
+                        true => drift + self.$stage.drift(own),
+                        false => drift,
+                    };
+                )+
+                let _ = rest;
+                drift
             }
 
             /// The steepest slope of the output over the sum, at rest.

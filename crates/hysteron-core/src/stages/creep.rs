@@ -121,6 +121,11 @@ impl<T: Real> Stage<T> for Creep<'_, T> {
         self.gain() * h
     }
 
+    fn drift(&self, fade: &[T]) -> T {
+        let terms = self.coefficients.iter().zip(fade);
+        terms.fold(T::ZERO, |sum, (&c, &fade)| sum + c / (T::ONE - fade))
+    }
+
     fn steepest(&self, fade: &Factors<T>) -> T {
         let terms = self.coefficients.iter().zip(fade);
         terms.fold(T::ONE, |gain, (&c, &fade)| gain + c * (T::ONE - fade))

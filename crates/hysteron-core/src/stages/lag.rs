@@ -84,6 +84,11 @@ impl<T: Real> Stage<T> for Lag<T> {
         sum
     }
 
+    fn drift(&self, fade: &[T]) -> T {
+        fade.iter()
+            .fold(T::ZERO, |sum, &fade| sum + T::ONE / (T::ONE - fade))
+    }
+
     fn steepest(&self, [fade]: &Factors<T>) -> T {
         T::ONE - *fade
     }

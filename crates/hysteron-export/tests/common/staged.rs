@@ -183,20 +183,21 @@ impl Case {
         self.sampling.dt = Some(dt);
     }
 
-    /// The range of outputs, at the load where it is widest, after creep.
+    /// The range of outputs, at the load where it is widest, behind all stages.
     pub fn widest(&self) -> f64 {
         let stages = self.model.stages();
         let gains = stages.axis.load.gains.iter().copied();
-        let gain = gains.reduce(f64::max).unwrap_or(1.0) * stages.creep.gain();
+        let gain = gains.reduce(f64::max).unwrap_or(1.0);
         let sum = |weights: &[f64]| weights.iter().sum::<f64>();
         let parts = self.model.load.iter().flat_map(|load| load.parts());
         let own = sum(self.model.weights());
         let largest = parts.map(|part| sum(&part.weights)).fold(own, f64::max);
-        let span = match self.model.operator() {
-            Operator::Mkp => 1.0,
-            _ => 2.0,
+        let off = match self.model.operator() {
+            Operator::Mkp => 0.0,
+            _ => -largest,
         };
-        span * gain * largest
+        let [low, high] = [off, largest].map(|sum| stages.behind.settled(gain * sum));
+        high - low
     }
 }
 
