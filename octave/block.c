@@ -272,7 +272,7 @@ static mxArray *saved(const struct block *block) {
     return result;
 }
 
-/* Without `stages` and `time`, body, creep and lag are at rest with the next sample. */
+/* Without `stages` and `time`, all stages are at rest with the next sample. */
 static void restore(struct block *block, const mxArray *from) {
     const mxArray *points, *input, *numbers, *time;
     struct HysteronStageState stages;

@@ -5,7 +5,7 @@
 %
 %   [X, STATUS] = ... also says where X gives Y (int8): 0 it does, -1 below and 1 above every output
 %   of the model, 2 within a jump of a relay model, 3 not in this sample: X is at an end of its
-%   range, or creep and lag are too slow.
+%   range, or a stage is too slow.
 %
 %   X = SF_INVERSE_MKP(..., NAME, VALUE, ...) with the options
 %       'policy'     'hold' (the default): the input rests while the target rests;

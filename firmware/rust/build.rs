@@ -35,15 +35,18 @@ fn main() {
     let (staged_models, staged_runs) = staged::all(vectors);
     text.push_str("pub static STAGED: &[Staged] = &[\n");
     for m in &staged_models {
-        let [loads, shifts, scales, gains, offsets] = &m.curves;
+        let constants = m.constants.iter();
+        let constants: String = constants
+            .map(|(name, list)| format!("({name:?}, &{list:?}), "))
+            .collect();
         let parts = m.parts.iter();
         let parts: String = parts
             .map(|(offset, weights)| format!("({offset:?}, &{weights:?}), "))
             .collect();
         writeln!(
             text,
-            "Staged {{ model: {}, body: {:?}, curves: [&{loads:?}, &{shifts:?}, &{scales:?}, &{gains:?}, &{offsets:?}], parts: &[{parts}], range: {:?}, spacing: &{:?}, creep: [&{:?}, &{:?}], lag: {:?}, drive: {:?}, dt: {:?} }},",
-            literal(&m.model), m.body, m.range, m.spacing, m.creep[0], m.creep[1], m.lag, m.drive, m.dt
+            "Staged {{ model: {}, constants: &[{constants}], parts: &[{parts}], range: {:?}, drive: {:?}, dt: {:?} }},",
+            literal(&m.model), m.range, m.drive, m.dt
         )
         .expect("text");
     }

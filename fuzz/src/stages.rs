@@ -3,7 +3,7 @@
 
 use crate::given::{Input, Number, Setup};
 use arbitrary::Arbitrary;
-use hysteron_core::{Body, Creep, Sample, StageState, Stages, Status, Target, Wanted};
+use hysteron_core::{Sample, StageState, Stages, Status, Target, Wanted};
 
 /// The part of the range by which a target that is reached may be missed, beside its tolerance.
 const ROUNDING: f64 = 1e-3;
@@ -13,9 +13,8 @@ const LARGEST: f64 = 1e9;
 #[derive(Arbitrary, Debug)]
 pub struct Chain {
     setup: Setup,
-    body: Option<[Number; 4]>,
-    creep: Vec<[Number; 2]>,
-    lag: Number,
+    /// A list for each constant that the stages declare.
+    constants: Vec<Vec<Number>>,
     offset: Number,
     falling: bool,
     calls: Vec<(Call, Number)>,
@@ -37,34 +36,26 @@ impl Chain {
         let Some((model, mut state)) = self.setup.build(&weights) else {
             return;
         };
-        let (coefficients, taus): (Vec<f64>, Vec<f64>) = self
-            .creep
-            .iter()
-            .map(|[c, tau]| (c.get(), tau.get()))
-            .unzip();
-        let body = self.body.map(|body| body.map(Number::get));
-        let body = body.map(|[ambient, gain, tau_heating, tau_cooling]| Body {
-            ambient,
-            gain,
-            tau_heating,
-            tau_cooling,
-        });
+        let lists = self.constants.iter();
+        let lists = lists.map(|list| list.iter().map(|number| number.get()).collect());
+        let lists: Vec<Vec<f64>> = lists.collect();
+        let mut next = lists.iter();
+        let Ok(stages) = Stages::of_lists(|| next.next().map_or(&[][..], Vec::as_slice)) else {
+            return;
+        };
         let stages = Stages {
-            body,
-            creep: Creep {
-                coefficients: &coefficients,
-                taus: &taus,
-            },
-            lag: self.lag.get(),
             offset: self.offset.get(),
             falling: self.falling,
-            ..Stages::NONE
+            ..stages
         };
         if stages.check(&model).is_err() {
             return;
         }
         let mut memory = StageState::default();
         let (low, high) = model.output_range();
+        let gains = stages.axis.load.gains.iter();
+        let gain = gains.fold(1.0, |most: f64, gain| most.max(*gain));
+        let range = stages.behind.settled(gain * high) - stages.behind.settled(gain * low);
         for (call, dt) in &self.calls {
             let dt = Some(dt.get().clamp(-1.0, LARGEST));
             match call {
@@ -73,7 +64,7 @@ impl Chain {
                     let sample = Sample {
                         input,
                         dt,
-                        load: None,
+                        load: Some(0.0),
                     };
                     if let Ok(found) = stages.step(&model, &mut state, &mut memory, sample) {
                         assert!(found.output.is_finite(), "{found:?} of {sample:?}");
@@ -86,6 +77,7 @@ impl Chain {
                     let (mut before, mut past) = (state.clone(), memory);
                     let wanted = Wanted {
                         dt,
+                        load: Some(0.0),
                         ..Target::new(target).into()
                     };
                     let found = stages.invert(&inverse, &mut state, &mut memory, wanted);
@@ -95,11 +87,11 @@ impl Chain {
                         let sample = Sample {
                             input: found.input,
                             dt,
-                            load: None,
+                            load: Some(0.0),
                         };
                         let there = stages.step(&model, &mut before, &mut past, sample);
                         let missed = (there.expect("a drive").output - target).abs();
-                        assert!(missed <= ROUNDING * (high - low), "{missed}: {found:?}");
+                        assert!(missed <= ROUNDING * range, "{missed}: {found:?}");
                     }
                 }
             }

@@ -496,6 +496,8 @@ class Model:
     @property
     def spacing(self) -> _Array | _MaybeNone: ...
     @property
+    def constants(self) -> dict[str, _Array]: ...
+    @property
     def creep(self) -> tuple[CreepTerm, ...]: ...
     @property
     def lag(self) -> float: ...
@@ -899,6 +901,7 @@ def fit(
     spacing: Literal["auto", "uniform"] = "auto",
     creep: int | Literal['auto', 'off'] = "off",
     lag: float | Literal['auto', 'off'] = "off",
+    curve: int | Literal['auto', 'off'] = "off",
     bootstrap: int | None = None,
     repeats: Recording | Sequence[Recording] | None = None,
     hold_out: str | Recording | Sequence[Recording] | None = None,
@@ -930,6 +933,7 @@ def fit_fleet(
     spacing: Literal["auto", "uniform"] = "auto",
     creep: int | Literal['auto', 'off'] = "off",
     lag: float | Literal['auto', 'off'] = "off",
+    curve: int | Literal['auto', 'off'] = "off",
     bootstrap: int | None = None,
     hold_out: str | None = None,
     thermal: Literal["first-order", True, False] | None = None,

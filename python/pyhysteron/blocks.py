@@ -9,7 +9,7 @@ points…]``, and at its end the ``stages`` of `State.save` for a model that has
 where the model starts. The output of a model follows its input without delay. A closed loop needs a
 delay elsewhere, as any loop of python-control.
 
-A model with a thermal body, creep or a lag steps with the block's sample time, and one that depends
+A model that depends on time steps with the block's sample time, and one that depends
 on a load has an input for it.
 """
 

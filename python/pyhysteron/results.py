@@ -1473,9 +1473,9 @@ class SavedState(_Saved, total=False):
         Turning points as positions in ``[0, K]``.
     input : float
         The last input of the operators, in its unit.
-    stages : ndarray, shape (7,)
-        For a model with stages: 0 or 1 for whether there was a sample, the temperature, the output
-        of each of four creep terms, the lagged sum.
+    stages : ndarray
+        For a model with stages: 0 or 1 for whether there was a sample, the temperature, and what
+        each stage behind the operators remembers.
     """
 
     stages: _Array

@@ -67,7 +67,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         The column of `X` that is the input.
     time_column, load_column : int, optional
         The columns of `X` that are the time, s, and the load. Others are ignored.
-    load_law, load_degree, spacing, creep, lag, thermal
+    load_law, load_degree, spacing, creep, lag, curve, thermal
         As for `pyhysteron.fit`.
 
     Attributes
@@ -111,6 +111,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         spacing: Literal["auto", "uniform"] = "auto",
         creep: int | Literal["auto", "off"] = "off",
         lag: float | Literal["auto", "off"] = "off",
+        curve: int | Literal["auto", "off"] = "off",
         thermal: Literal["first-order", True, False] | None = None,
     ) -> None:
         self.levels = levels
@@ -133,6 +134,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.spacing = spacing
         self.creep = creep
         self.lag = lag
+        self.curve = curve
         self.thermal = thermal
 
     def fit(self, X: ArrayLike, y: Any, *, repeats: Any = None) -> HysteresisRegressor:
@@ -237,7 +239,7 @@ class BranchSplit:
     a few dozen samples. They go before the fold in the test set, and before what follows the fold
     in the training set. So each operator has the same state after a fold as in the whole recording.
 
-    This holds for the operators. A thermal body, creep and a lag remember the time itself: for a
+    This holds for the operators. Stages that depend on time remember the time itself: for a
     model that depends on time, leave out whole recordings instead.
 
     These few samples are in both sets, and the folds are no partition. `cross_val_score`,

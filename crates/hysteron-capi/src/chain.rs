@@ -7,7 +7,7 @@ use crate::parts::{ByLoad, GivenParts};
 use crate::pointer::Arguments;
 use crate::room::{Kind, Object, size};
 use crate::stage_state::HysteronStageState;
-use crate::stages::{HysteronStages, copied, numbers};
+use crate::stages::{HysteronStages, StageArguments, copied, numbers};
 use crate::surroundings::given;
 use crate::types::{self, clipped as clipped_constant, status as status_constant};
 use hysteron_core::{Error, Sample, Stages, Wanted, operator_count};
@@ -86,7 +86,7 @@ fn all_numbers(stages: &Stages<'_, f64>, parts: Option<&GivenParts<'_>>) -> Opti
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_size(stages: *const HysteronStages) -> usize {
     // SAFETY: the contract of the crate.
-    let constants = unsafe { Arguments::default().stages(stages) };
+    let constants = unsafe { StageArguments::default().stages(stages) };
     let size = |(stages, parts): (Stages<'_, f64>, Option<GivenParts<'_>>)| {
         let count = all_numbers(&stages, parts.as_ref())?;
         size::<HysteronCoreStages, f64>(count)
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn hysteron_core_stages_init(
     stages: *mut *mut HysteronCoreStages,
 ) -> i32 {
     guard_plain(|| {
-        let mut arguments = Arguments::default();
+        let mut arguments = StageArguments::default();
         // SAFETY: the contract of the crate.
         let (model, room, out, (constants, parts)) = unsafe {
             (
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn hysteron_core_stages_init(
             let (place, rest) = place.split_at_mut(numbers(&constants));
             let by_load = parts.map(|parts| parts.built(model, rest)).transpose()?;
             Ok(Chain {
-                stages: copied(&constants, place),
+                stages: copied(&constants, place)?,
                 levels,
                 by_load,
             })

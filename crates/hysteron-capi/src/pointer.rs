@@ -8,20 +8,28 @@ use crate::fault::{Fault, Result};
 use std::ffi::{CStr, c_char};
 use std::ops::Range;
 
-/// The largest number of pointers of a function.
-const MOST: usize = 14;
+/// The pointers of a function that takes no structure with lists: it has up to 14.
+pub(crate) type Arguments = Pointers<14>;
 
-/// The pointers of one call. Each is checked, and refused if it shares memory with one before it.
+/// The pointers of one call, `MOST` at most. Each is checked, and refused if it shares memory with one before it.
 ///
 /// Memory behind a pointer is reached in this way only, so that no function can forget a pair. A
 /// function takes all its pointers before it writes.
-#[derive(Default)]
-pub(crate) struct Arguments {
+pub(crate) struct Pointers<const MOST: usize> {
     taken: [Range<usize>; MOST],
     count: usize,
 }
 
-impl Arguments {
+impl<const MOST: usize> Default for Pointers<MOST> {
+    fn default() -> Self {
+        Self {
+            taken: [const { 0..0 }; MOST],
+            count: 0,
+        }
+    }
+}
+
+impl<const MOST: usize> Pointers<MOST> {
     /// Notes that an argument uses `bytes` bytes from `start` on.
     pub(crate) fn claim(&mut self, start: usize, bytes: usize, name: &'static str) -> Result<()> {
         let end = start.saturating_add(bytes);
@@ -148,6 +156,17 @@ impl Arguments {
         self.claim(pointer.addr(), text.count_bytes() + 1, name)?;
         text.to_str().map_err(|_| Fault::Call(HYSTERON_TEXT, name))
     }
+}
+
+/// A text that is compared with others alone, and may share memory with anything.
+///
+/// # Safety
+/// `pointer` is null or a text that ends with a zero byte, which nobody writes during `'a`.
+pub(crate) unsafe fn name<'a>(pointer: *const c_char, what: &'static str) -> Result<&'a str> {
+    check(pointer, what)?;
+    // SAFETY: the caller's promise, and not null.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str().map_err(|_| Fault::Call(HYSTERON_TEXT, what))
 }
 
 pub(crate) fn check<T>(pointer: *const T, name: &'static str) -> Result<()> {

@@ -2,7 +2,7 @@
 
 use crate::codes::HYSTERON_HANDLE;
 use crate::fault::{Fault, Result};
-use crate::pointer::{Arguments, Out, check};
+use crate::pointer::{Out, Pointers, check};
 use hysteron_core::Error;
 use std::ffi::c_void;
 
@@ -35,7 +35,7 @@ pub(crate) fn size<K: Kind, E>(count: usize) -> Option<usize> {
         .checked_add(size_of::<Head>() + size_of::<K::Content>())
 }
 
-impl Arguments {
+impl<const MOST: usize> Pointers<MOST> {
     /// The object at a pointer from an initialisation.
     ///
     /// # Safety
@@ -50,10 +50,10 @@ impl Arguments {
         unsafe { Ok(&mut *self.content::<K>(pointer, name)?) }
     }
 
-    /// As [`Arguments::object`], for an object that is only read. Others may read it too.
+    /// As [`Pointers::object`], for an object that is only read. Others may read it too.
     ///
     /// # Safety
-    /// As for [`Arguments::object`], but others may read it.
+    /// As for [`Pointers::object`], but others may read it.
     pub(crate) unsafe fn object_ref<'a, K: Kind>(
         &mut self,
         pointer: *const K,
@@ -66,7 +66,7 @@ impl Arguments {
     /// An object that is changed only if the call finds that it has to.
     ///
     /// # Safety
-    /// As for [`Arguments::object_ref`] while it is read, and as for [`Arguments::object`] once it
+    /// As for [`Pointers::object_ref`] while it is read, and as for [`Pointers::object`] once it
     /// is changed.
     pub(crate) unsafe fn object_at<K: Kind>(
         &mut self,
@@ -78,7 +78,7 @@ impl Arguments {
     }
 
     /// # Safety
-    /// As for [`Arguments::object_ref`].
+    /// As for [`Pointers::object_ref`].
     unsafe fn content<K: Kind>(
         &mut self,
         pointer: *mut K,
@@ -113,13 +113,13 @@ pub(crate) struct Object<K: Kind>(*mut K::Content);
 impl<K: Kind> Object<K> {
     /// To read it.
     pub(crate) fn get(&self) -> &K::Content {
-        // SAFETY: the contract of `Arguments::object_at`.
+        // SAFETY: the contract of `Pointers::object_at`.
         unsafe { &*self.0 }
     }
 
     /// To change it.
     pub(crate) fn get_mut(&mut self) -> &mut K::Content {
-        // SAFETY: the contract of `Arguments::object_at`.
+        // SAFETY: the contract of `Pointers::object_at`.
         unsafe { &mut *self.0 }
     }
 }
@@ -152,7 +152,7 @@ impl Room {
         }
         let (head, content) = (self.head, content_of::<K>(self.head));
         let (mark, bytes) = (K::MARK, needed);
-        // SAFETY: by the contract of `Arguments::room` the bytes are valid and nobody else uses
+        // SAFETY: by the contract of `Pointers::room` the bytes are valid and nobody else uses
         // them. They suffice for head, content and elements, which lie apart and aligned, as `size`
         // asserts; each element is written before the slice is made.
         unsafe {

@@ -1,28 +1,26 @@
-//! What body, creep and lag remember, as a structure of numbers.
+//! What the stages remember, as a structure of numbers.
 
 use crate::fault::{Result, guard};
 use crate::pointer::Arguments;
 use crate::state::STATES;
-use hysteron_core::{MAX_CREEP, StageState};
+use hysteron_core::{STATE_NUMBERS, StageState};
 
-/// The largest number of creep terms.
-pub const HYSTERON_CREEP_TERMS: usize = 4;
+/// How many numbers the stages behind the operators remember.
+pub const HYSTERON_BEHIND: usize = 5;
 
-const _: () = assert!(HYSTERON_CREEP_TERMS == MAX_CREEP);
+const _: () = assert!(2 + HYSTERON_BEHIND == STATE_NUMBERS);
 
-/// What body, creep and lag remember from one sample to the next. All zeros: there was no sample
-/// yet. A copy of it is a saved state.
+/// What the stages remember from one sample to the next. All zeros: there was no sample yet. A copy
+/// of it is a saved state.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct HysteronStageState {
-    /// 1 after the first sample, 0 before it. Body, creep and lag are at rest with that sample.
+    /// 1 after the first sample, 0 before it. The stages are at rest with that sample.
     pub started: f64,
     /// The temperature; without a thermal body, the input itself.
     pub temperature: f64,
-    /// The output of each creep term.
-    pub creep: [f64; HYSTERON_CREEP_TERMS],
-    /// The sum of the operators after creep and lag.
-    pub lagged: f64,
+    /// What each stage behind the operators remembers.
+    pub behind: [f64; HYSTERON_BEHIND],
 }
 
 impl HysteronStageState {
@@ -30,25 +28,26 @@ impl HysteronStageState {
         Ok(StageState::from_numbers(&self.numbers())?)
     }
 
-    fn numbers(&self) -> [f64; MAX_CREEP + 3] {
-        let [a, b, c, d] = self.creep;
-        [self.started, self.temperature, a, b, c, d, self.lagged]
+    fn numbers(&self) -> [f64; STATE_NUMBERS] {
+        let mut numbers = [self.started; STATE_NUMBERS];
+        numbers[1] = self.temperature;
+        numbers[2..].copy_from_slice(&self.behind);
+        numbers
     }
 }
 
-impl From<[f64; MAX_CREEP + 3]> for HysteronStageState {
-    fn from(numbers: [f64; MAX_CREEP + 3]) -> Self {
-        let [started, temperature, a, b, c, d, lagged] = numbers;
+impl From<[f64; STATE_NUMBERS]> for HysteronStageState {
+    fn from(numbers: [f64; STATE_NUMBERS]) -> Self {
+        let [started, temperature, behind @ ..] = numbers;
         Self {
             started,
             temperature,
-            creep: [a, b, c, d],
-            lagged,
+            behind,
         }
     }
 }
 
-/// Saves what body, creep and lag remember. Together with `hysteron_state_save` it is the whole
+/// Saves what the stages remember. Together with `hysteron_state_save` it is the whole
 /// state. A model without stages needs it not.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_save_stages(
@@ -65,7 +64,7 @@ pub unsafe extern "C" fn hysteron_state_save_stages(
 }
 
 /// Restores, bit for bit, what `hysteron_state_save_stages` gave. Call it after
-/// `hysteron_state_restore`, which puts body, creep and lag at rest with the next sample.
+/// `hysteron_state_restore`, which puts the stages at rest with the next sample.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_restore_stages(
     state: u64,

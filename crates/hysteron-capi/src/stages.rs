@@ -1,64 +1,52 @@
-//! The constants of the stages around the operators, as a structure of numbers and arrays.
+//! The constants of the stages around the operators, as lists of numbers with names.
 
 use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result, guard};
 use crate::model::MODELS;
 use crate::parts::GivenParts;
-use crate::pointer::Arguments;
+use crate::pointer::{Arguments, Pointers, name};
 use crate::types::sign as sign_of;
 use hysteron::{Model, Sign};
-use hysteron_core::{Axis, Body, Creep, Load, Stages};
+use hysteron_core::{Constant, Stages};
+use std::ffi::{CString, c_char};
 use std::ptr::null;
+use std::sync::LazyLock;
+
+/// Room for the constants of stages. There are fewer.
+pub const HYSTERON_CONSTANTS: usize = 32;
+
+/// The pointers of a call that takes stages: their constants, two for the parts, and its own.
+pub(crate) type StageArguments = Pointers<{ HYSTERON_CONSTANTS + 8 }>;
+
+/// A constant of a stage: a list of numbers. The names, units and ranges are those of
+/// `docs/model.md`. Without a name it is ignored.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct HysteronConstant {
+    /// Its name; null for none.
+    pub name: *const c_char,
+    /// Its numbers; null for none.
+    pub numbers: *const f64,
+    /// How many there are. A stage whose constants have no numbers is not there.
+    pub count: usize,
+}
 
 /// The constants of the stages around the operators. All zeros, and `sign` 1, is a model without
 /// stages.
 ///
 /// ```text
 /// T = body(drive)    x = W(a(load) T - s(load))    h = operators(x)
-/// y = offset + o(load) + sign * lag(creep(g(load) h))
+/// y = offset + o(load) + sign * behind(g(load) h)
 /// ```
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronStages {
-    /// 1 for a thermal body, whose input is a drive; 0 for none.
-    pub body: i32,
     /// 1: the output rises with the operators' sum; −1: it falls.
     pub sign: i32,
     /// The output where the operators' sum is zero.
     pub offset: f64,
-    /// Body: temperature at rest without a drive.
-    pub ambient: f64,
-    /// Body: temperature at rest per unit of the drive, above 0.
-    pub gain: f64,
-    /// Body: time constant of heating in seconds, above 0.
-    pub tau_heating: f64,
-    /// Body: time constant of cooling in seconds, above 0.
-    pub tau_cooling: f64,
-    /// Number of loads at which the curves are known; 0 without a load. Beyond the outermost loads
-    /// the curves stay as they are there.
-    pub load_count: usize,
-    /// The loads, ascending.
-    pub loads: *const f64,
-    /// The shift `s` of the axis at each load, in the unit of the temperature. Null for 0.
-    pub shifts: *const f64,
-    /// The scale `a` of the axis at each load, above 0. Null for 1.
-    pub scales: *const f64,
-    /// The gain `g` at each load, above 0. Null for 1.
-    pub gains: *const f64,
-    /// The offset `o` at each load, in the output's unit. Null for 0.
-    pub offsets: *const f64,
-    /// Number of corners of the grid: `K + 1`, or 0 for levels at equal distances.
-    pub spacing_count: usize,
-    /// The temperatures at the corners, ascending, from level 0, the bottom of the plane, on.
-    pub spacing: *const f64,
-    /// Number of creep terms, up to `HYSTERON_CREEP_TERMS`.
-    pub creep_count: usize,
-    /// The share of the operators' sum that creeps, of each term, from 0.
-    pub creep: *const f64,
-    /// The time constant of each creep term in seconds, above 0.
-    pub creep_taus: *const f64,
-    /// Time constant of a lag of the whole in seconds; 0 for none.
-    pub lag: f64,
+    /// The constants of all stages, in any order, each once.
+    pub constants: [HysteronConstant; HYSTERON_CONSTANTS],
     /// Number of parts of weights that depend on the load, up to `HYSTERON_PARTS`; 0 for weights
     /// that do not. `offset` and the weights of the model have no effect then.
     pub part_count: usize,
@@ -75,116 +63,78 @@ pub struct HysteronStages {
     pub load_max: f64,
 }
 
-/// The arrays of stages.
-fn arrays<'a>(stages: &Stages<'a, f64>) -> [&'a [f64]; 8] {
-    let Stages { axis, creep, .. } = stages;
-    [
-        axis.load.loads,
-        axis.load.shifts,
-        axis.load.scales,
-        axis.load.gains,
-        axis.load.offsets,
-        axis.spacing,
-        creep.coefficients,
-        creep.taus,
-    ]
+/// The constants that stages declare.
+fn table() -> impl Iterator<Item = &'static Constant> {
+    Stages::<f64>::declared().flat_map(|stage| stage.constants)
 }
 
-/// How many numbers the arrays of stages have.
+/// The names of all constants, for C.
+static NAMES: LazyLock<Vec<CString>> = LazyLock::new(|| {
+    // No name has a zero byte.
+    let name = |constant: &Constant| CString::new(constant.name).unwrap_or_default();
+    table().map(name).collect()
+});
+
+/// How many numbers the lists of stages have.
 pub(crate) fn numbers(stages: &Stages<'_, f64>) -> usize {
-    arrays(stages).iter().map(|array| array.len()).sum()
+    stages.constants().map(|(_, list)| list.len()).sum()
 }
 
-/// The same stages with their arrays in `place`, which has [`numbers`] elements.
-pub(crate) fn copied(stages: &Stages<'_, f64>, place: &'static mut [f64]) -> Stages<'static, f64> {
+/// The same stages with their lists in `place`, which has [`numbers`] elements.
+pub(crate) fn copied(
+    stages: &Stages<'_, f64>,
+    place: &'static mut [f64],
+) -> Result<Stages<'static, f64>> {
     let mut rest = place;
-    let [
-        loads,
-        shifts,
-        scales,
-        gains,
-        offsets,
-        spacing,
-        coefficients,
-        taus,
-    ] = arrays(stages).map(|array| {
-        let (copy, after) = std::mem::take(&mut rest).split_at_mut(array.len());
+    let mut lists = stages.constants();
+    let copies = Stages::of_lists(|| {
+        let list = lists.next().map_or(&[][..], |(_, list)| list);
+        let (copy, after) = std::mem::take(&mut rest).split_at_mut(list.len());
         rest = after;
-        copy.copy_from_slice(array);
-        &*copy
-    });
-    let load = Load {
-        loads,
-        shifts,
-        scales,
-        gains,
-        offsets,
-    };
-    Stages {
-        axis: Axis { load, spacing },
-        creep: Creep { coefficients, taus },
-        body: stages.body,
-        lag: stages.lag,
+        copy.copy_from_slice(list);
+        copy
+    })?;
+    Ok(Stages {
         offset: stages.offset,
         falling: stages.falling,
-    }
+        ..copies
+    })
 }
 
-impl Arguments {
-    /// The constants of stages and the arrays that they point to, with the parts of the weights.
+impl StageArguments {
+    /// The constants of stages and the lists that they point to, with the parts of the weights.
     /// Take them last, so that shared memory is found first.
     ///
     /// # Safety
     /// `stages` is null or valid for a read; each of its pointers is null or valid for reads of as
-    /// many elements as its count says, which nobody writes during `'a`.
+    /// many elements as the count beside it says, or a text that ends with a zero byte. Nobody
+    /// writes them during `'a`.
     pub(crate) unsafe fn stages<'a>(
         &mut self,
         stages: *const HysteronStages,
     ) -> Result<(Stages<'a, f64>, Option<GivenParts<'a>>)> {
         // SAFETY: the caller's promise; every bit pattern is a value of each field.
         let given = unsafe { self.value(stages, "stages")? };
-        let curve = |values: *const f64| {
-            if values.is_null() {
-                0
-            } else {
-                given.load_count
-            }
-        };
-        // SAFETY: the caller's promise.
-        let (load, spacing, creep) = unsafe {
-            (
-                Load {
-                    loads: self.array(given.loads, given.load_count, "loads")?,
-                    shifts: self.array(given.shifts, curve(given.shifts), "shifts")?,
-                    scales: self.array(given.scales, curve(given.scales), "scales")?,
-                    gains: self.array(given.gains, curve(given.gains), "gains")?,
-                    offsets: self.array(given.offsets, curve(given.offsets), "offsets")?,
-                },
-                self.array(given.spacing, given.spacing_count, "spacing")?,
-                Creep {
-                    coefficients: self.array(given.creep, given.creep_count, "creep")?,
-                    taus: self.array(given.creep_taus, given.creep_count, "creep_taus")?,
-                },
-            )
-        };
-        let body = Body {
-            ambient: given.ambient,
-            gain: given.gain,
-            tau_heating: given.tau_heating,
-            tau_cooling: given.tau_cooling,
-        };
-        let body = match given.body {
-            0 => None,
-            1 => Some(body),
-            _ => return Err(Fault::Call(HYSTERON_VALUE, "body")),
-        };
+        let mut lists: [&[f64]; HYSTERON_CONSTANTS] = [&[]; HYSTERON_CONSTANTS];
+        let mut seen = [false; HYSTERON_CONSTANTS];
+        for list in given.constants.iter().filter(|list| !list.name.is_null()) {
+            // SAFETY: the caller's promise.
+            let named = unsafe { name(list.name, "constants")? };
+            let unknown = Fault::Call(HYSTERON_VALUE, "constants");
+            let mut known = table().enumerate();
+            let known = known.find(|(n, known)| known.name == named && !seen[*n]);
+            let Some((place, constant)) = known else {
+                return Err(unknown);
+            };
+            seen[place] = true;
+            // SAFETY: the caller's promise.
+            lists[place] = unsafe { self.array(list.numbers, list.count, constant.name)? };
+        }
+        let mut next = lists.into_iter();
         let stages = Stages {
-            body,
-            axis: Axis { load, spacing },
-            creep,
-            lag: given.lag,
             offset: given.offset,
             falling: sign_of(given.sign)? == Sign::Negative,
+            ..Stages::of_lists(|| next.next().unwrap_or(&[]))?
         };
         if given.part_count == 0 {
             return Ok((stages, None));
@@ -210,8 +160,9 @@ impl Arguments {
     }
 }
 
-/// Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The arrays are
-/// those of the model: they end when it and its states are freed.
+/// Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The lists are
+/// those of the model: they end when it and its states are freed. Every constant has its name, also
+/// where it has no numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_stages(model: u64, stages: *mut HysteronStages) -> i32 {
     guard(|| {
@@ -226,21 +177,6 @@ fn of(model: &Model) -> HysteronStages {
     let by_load = model.load.as_ref().filter(|load| load.parts().len() > 1);
     let (part_offsets, part_weights) = by_load.map_or((&[][..], &[][..]), |load| load.joined());
     let (load_min, load_max) = by_load.map_or((0.0, 0.0), |load| load.range());
-    let Stages {
-        body,
-        axis: Axis { load, spacing },
-        creep,
-        lag,
-        offset,
-        falling,
-    } = model.stages();
-    let none = Body {
-        ambient: 0.0,
-        gain: 0.0,
-        tau_heating: 0.0,
-        tau_cooling: 0.0,
-    };
-    let constants = body.unwrap_or(none);
     let start = |values: &[f64]| {
         if values.is_empty() {
             null()
@@ -248,26 +184,28 @@ fn of(model: &Model) -> HysteronStages {
             values.as_ptr()
         }
     };
+    let nothing = HysteronConstant {
+        name: null(),
+        numbers: null(),
+        count: 0,
+    };
+    let mut constants = [nothing; HYSTERON_CONSTANTS];
+    let lists = model.stage_lists();
+    for ((place, name), list) in constants.iter_mut().zip(NAMES.iter()).zip(lists) {
+        *place = HysteronConstant {
+            name: name.as_ptr(),
+            numbers: start(list),
+            count: list.len(),
+        };
+    }
     HysteronStages {
-        body: body.is_some().into(),
-        sign: if falling { -1 } else { 1 },
-        offset,
-        ambient: constants.ambient,
-        gain: constants.gain,
-        tau_heating: constants.tau_heating,
-        tau_cooling: constants.tau_cooling,
-        load_count: load.loads.len(),
-        loads: start(load.loads),
-        shifts: start(load.shifts),
-        scales: start(load.scales),
-        gains: start(load.gains),
-        offsets: start(load.offsets),
-        spacing_count: spacing.len(),
-        spacing: start(spacing),
-        creep_count: creep.taus.len(),
-        creep: start(creep.coefficients),
-        creep_taus: start(creep.taus),
-        lag,
+        sign: if model.sign() == Sign::Negative {
+            -1
+        } else {
+            1
+        },
+        offset: model.offset(),
+        constants,
         part_count: part_offsets.len(),
         part_weight_count: if by_load.is_some() {
             model.weights().len()
@@ -278,5 +216,15 @@ fn of(model: &Model) -> HysteronStages {
         part_weights: start(part_weights),
         load_min,
         load_max,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_room_for_all_constants() {
+        assert!(table().count() <= HYSTERON_CONSTANTS);
     }
 }

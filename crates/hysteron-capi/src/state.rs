@@ -41,10 +41,10 @@ impl Running {
 pub(crate) static STATES: Table<Running> = Table::new(2);
 
 /// Makes a state of `model`, as the fit found it before the first sample, or with all operators off
-/// where it found none. Body, creep and lag are at rest with the first sample. `model` may be freed
+/// where it found none. The stages are at rest with the first sample. `model` may be freed
 /// before the state.
 ///
-/// The model may have stages: a load, a thermal body, creep, a lag. Move the state by the functions
+/// The model may have stages. Move the state by the functions
 /// whose names end with `_in`, which take time and load. The others refuse what they cannot know.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 {
@@ -64,8 +64,8 @@ pub extern "C" fn hysteron_state_free(state: u64) -> i32 {
     guard(|| STATES.remove(state, "state"))
 }
 
-/// Switches all operators off, as at the bottom of the plane. Body, creep and lag are at rest with
-/// the next sample.
+/// Switches all operators off, as at the bottom of the plane. The stages are at rest with the
+/// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
     guard(|| {
@@ -76,7 +76,7 @@ pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
 }
 
 /// Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
-/// (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the
+/// (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). The stages are at rest with the
 /// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_start(state: u64, start: i32) -> i32 {
@@ -92,7 +92,7 @@ pub extern "C" fn hysteron_state_start(state: u64, start: i32) -> i32 {
     })
 }
 
-/// Switches all operators on, as at the top of the plane. Body, creep and lag are at rest with the
+/// Switches all operators on, as at the top of the plane. The stages are at rest with the
 /// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
@@ -295,7 +295,7 @@ pub unsafe extern "C" fn hysteron_state_save(
 }
 
 /// Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
-/// with the same plane. Body, creep and lag are at rest with the next sample, unless
+/// with the same plane. The stages are at rest with the next sample, unless
 /// `hysteron_state_restore_stages` comes after it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_restore(

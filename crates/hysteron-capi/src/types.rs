@@ -29,7 +29,7 @@ pub const HYSTERON_HIGH: i32 = 1;
 /// The target lies inside a jump of a relay model. The output lies beyond it.
 pub const HYSTERON_PASSED: i32 = 2;
 /// The model can give the target, but not in this sample: the input is at an end of its range, or
-/// creep and lag are too slow. The input goes as far as it can.
+/// a stage is too slow. The input goes as far as it can.
 pub const HYSTERON_LIMITED: i32 = 3;
 
 /// Start of a state: as a new one. It is what the fit found before the first sample, or off.
@@ -99,7 +99,7 @@ pub struct HysteronModelInfo {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronModelNeeds {
-    /// 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else
+    /// 1 if the model depends on time, so that samples need `dt`; else
     /// 0.
     pub time: i32,
     /// 1 if the model depends on a load, which samples then need; else 0.

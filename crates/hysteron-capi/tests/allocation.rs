@@ -148,8 +148,18 @@ fn stages(memory: &mut [Vec<u64>; 3]) {
         let code = hysteron_core_state_init(model, place, bytes, &mut state);
         assert_eq!(code, 0);
         let mut constants: HysteronStages = std::mem::zeroed();
-        (constants.sign, constants.lag) = (1, 0.5);
-        (constants.load_count, constants.loads) = (2, loads.as_ptr());
+        constants.sign = 1;
+        for (place, (name, numbers)) in constants
+            .constants
+            .iter_mut()
+            .zip([(c"lag", &[0.5][..]), (c"loads", &loads)])
+        {
+            *place = HysteronConstant {
+                name: name.as_ptr(),
+                numbers: numbers.as_ptr(),
+                count: numbers.len(),
+            };
+        }
         let (place, bytes) = stages_memory;
         let code = hysteron_core_stages_init(model, &constants, place, bytes, &mut stages);
         assert_eq!(code, 0);

@@ -6,10 +6,12 @@ mod own;
 mod whole;
 
 use hysteron_capi::*;
+use hysteron_core::Stages;
 use own::{NONE, Own, constants, ok, parsed};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};
+use std::ffi::CStr;
 use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 use whole::{BY_LOAD, Series, WHOLE, series};
@@ -116,7 +118,7 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
     limits.drive_min = NONE;
     assert_eq!(own.invert(1.0, 0.1, 100.0, &limits).0, HYSTERON_VALUE);
     let past = own.past;
-    own.past.creep[2] = NONE;
+    own.past.behind[2] = NONE;
     assert_eq!(own.step(0.5, 0.1, 100.0).0, HYSTERON_INPUT_NOT_FINITE);
     own.past = past;
     let mark = own.memory[2][0];
@@ -130,6 +132,15 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
     let other = Own::new(parsed(other));
     (own.model, own.state) = (other.model, other.state);
     assert_eq!(own.step(0.5, 0.1, 100.0).0, HYSTERON_STATE_MISMATCH);
+}
+
+/// The constant with this name.
+fn list<'c>(constants: &'c mut HysteronStages, name: &str) -> &'c mut HysteronConstant {
+    let mut lists = constants.constants.iter_mut();
+    // SAFETY: the names are texts of the library.
+    let named =
+        |list: &&mut HysteronConstant| unsafe { CStr::from_ptr(list.name).to_str() == Ok(name) };
+    lists.find(named).expect("a constant")
 }
 
 #[test]
@@ -146,45 +157,62 @@ fn constants_are_checked() {
     };
     static BACK: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
     static NAN: [f64; 4] = [1.0, NONE, 2.0, 3.0];
-    static ONES: [f64; 8] = [1.0; 8];
-    let stage: [&dyn Fn(&mut HysteronStages); 17] = [
-        &|c| c.gain = 0.0,
-        &|c| c.ambient = NONE,
-        &|c| c.tau_heating = -1.0,
-        &|c| c.tau_cooling = NONE,
-        &|c| c.lag = -1.0,
-        &|c| c.lag = NONE,
-        &|c| c.offset = f64::INFINITY,
-        &|c| c.loads = BACK.as_ptr(),
-        &|c| c.shifts = NAN.as_ptr(),
-        &|c| c.scales = BACK[1..].as_ptr(),
-        &|c| c.gains = NAN.as_ptr(),
-        &|c| c.offsets = NAN.as_ptr(),
-        &|c| c.spacing = BACK.as_ptr(),
-        &|c| c.spacing_count = 3,
-        &|c| c.creep_taus = BACK[2..].as_ptr(),
-        &|c| c.creep = NAN.as_ptr(),
-        &|c| (c.creep_count, c.creep, c.creep_taus) = (5, ONES.as_ptr(), NAN.as_ptr()),
-    ];
-    for (n, change) in stage.into_iter().enumerate() {
+    static MANY: [f64; 9] = [1.0; 9];
+    // Each constant out of its range, and with a number too many.
+    let declared: Vec<_> = Stages::<f64>::declared().collect();
+    let all = declared.iter().flat_map(|stage| stage.constants);
+    for constant in all {
+        let bad = make(&|c| {
+            let list = list(c, constant.name);
+            (list.numbers, list.count) = (NAN[1..].as_ptr(), list.count.max(1));
+        });
+        assert_eq!(bad, HYSTERON_STAGE, "{constant:?}");
+        let many = make(&|c| {
+            let list = list(c, constant.name);
+            (list.numbers, list.count) = (MANY.as_ptr(), MANY.len());
+        });
+        assert_eq!(many, HYSTERON_STAGE, "{constant:?}");
+        let null = make(&|c| list(c, constant.name).numbers = null());
+        let there = list(&mut constants(handle), constant.name).count > 0;
+        assert_eq!(null, if there { HYSTERON_NULL } else { HYSTERON_OK });
+    }
+    for (n, change) in [
+        (&|c: &mut HysteronStages| c.offset = f64::INFINITY) as &dyn Fn(&mut HysteronStages),
+        &|c| list(c, "loads").numbers = BACK.as_ptr(),
+        &|c| list(c, "spacing").numbers = BACK.as_ptr(),
+        &|c| list(c, "spacing").count = 3,
+    ]
+    .into_iter()
+    .enumerate()
+    {
         assert_eq!(make(change), HYSTERON_STAGE, "{n}");
     }
-    assert_eq!(make(&|c| c.body = 2), HYSTERON_VALUE);
     assert_eq!(make(&|c| c.sign = 0), HYSTERON_VALUE);
-    assert_eq!(make(&|c| c.load_count = usize::MAX), HYSTERON_VALUE);
-    assert_eq!(make(&|c| c.loads = null()), HYSTERON_NULL);
-    assert_eq!(make(&|c| c.spacing = null()), HYSTERON_NULL);
-    assert_eq!(make(&|c| c.creep_taus = null()), HYSTERON_NULL);
-    assert_eq!(make(&|c| c.shifts = c.loads), HYSTERON_OVERLAP);
-    assert_eq!(make(&|c| c.spacing = place.cast::<f64>()), HYSTERON_OVERLAP);
+    let count = |c: &mut HysteronStages| list(c, "loads").count = usize::MAX;
+    assert_eq!(make(&count), HYSTERON_VALUE);
+    assert_eq!(
+        make(&|c| list(c, "lag").name = c"none".as_ptr()),
+        HYSTERON_VALUE
+    );
+    assert_eq!(
+        make(&|c| list(c, "lag").name = c"gain".as_ptr()),
+        HYSTERON_VALUE
+    );
+    let same = |c: &mut HysteronStages| list(c, "shifts").numbers = list(c, "loads").numbers;
+    assert_eq!(make(&same), HYSTERON_OVERLAP);
+    let beside = |c: &mut HysteronStages| list(c, "spacing").numbers = place.cast::<f64>();
+    assert_eq!(make(&beside), HYSTERON_OVERLAP);
     let odd = |array: *const f64| array.cast::<u8>().wrapping_add(1).cast::<f64>();
-    assert_eq!(make(&|c| c.gains = odd(c.gains)), HYSTERON_ALIGNMENT);
+    let odd = |c: &mut HysteronStages| list(c, "gains").numbers = odd(list(c, "gains").numbers);
+    assert_eq!(make(&odd), HYSTERON_ALIGNMENT);
     ok(make(&|_| {}));
     ok(make(&|c| {
-        (c.shifts, c.scales, c.gains, c.offsets) = (null(), null(), null(), null())
+        for name in ["shifts", "scales", "gains", "offsets"] {
+            list(c, name).count = 0;
+        }
     }));
     ok(make(&|c| {
-        (c.body, c.load_count, c.spacing_count, c.creep_count) = (0, 0, 0, 0)
+        c.constants.iter_mut().for_each(|list| list.name = null())
     }));
 
     let (constants, mut stages) = (constants(handle), null_mut());

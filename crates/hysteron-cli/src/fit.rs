@@ -151,19 +151,13 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
             args::Spacing::Uniform => Spacing::Uniform,
             args::Spacing::Auto => Spacing::Auto,
         },
-        creep: match args.creep {
-            Step::Auto => Choice::Auto,
-            Step::Off => Choice::Fixed(0),
-            Step::Value(count) if count.fract() == 0.0 => Choice::Fixed(count as usize),
-            Step::Value(count) => {
-                return Err(format!("--creep {count}: a whole number is needed").into());
-            }
-        },
+        creep: count("creep", args.creep)?,
         lag: match args.lag {
             Step::Auto => Choice::Auto,
             Step::Off => Choice::Fixed(0.0),
             Step::Value(lag) => Choice::Fixed(lag),
         },
+        curve: count("curve", args.curve)?,
         ..FitOptions::default()
     };
     let fit = Fit::from(options)
@@ -234,6 +228,7 @@ fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
     lines.extend(model.thermal.as_ref().map(thermal_line));
     lines.extend(load_line(model));
     lines.extend(after_line(model, args));
+    lines.extend(curve_line(model, args));
     lines.extend(start_line(fit));
     lines.extend(prior_line(fit));
     lines.extend(text::confidence(fit, model));
@@ -328,6 +323,28 @@ fn load_line(model: &Model) -> Option<String> {
     Some(format!(
         "{name} from {low} to {high}: it {slope}{scaled}, and {weights}"
     ))
+}
+
+/// How many of something: terms, pieces.
+fn count(option: &str, step: Step) -> Result<Choice<usize>> {
+    match step {
+        Step::Auto => Ok(Choice::Auto),
+        Step::Off => Ok(Choice::Fixed(0)),
+        Step::Value(count) if count.fract() == 0.0 && count >= 0.0 => {
+            Ok(Choice::Fixed(count as usize))
+        }
+        Step::Value(count) => Err(format!("--{option} {count}: a whole number is needed").into()),
+    }
+}
+
+/// The output curve; said where it was asked for.
+fn curve_line(model: &Model, args: &args::Fit) -> Option<String> {
+    let constants = model.constants();
+    match constants.get("curve_sums").len() {
+        0 if args.how.curve == Step::Off => None,
+        0 => Some("no output curve: it does not predict parts of the recording left out".into()),
+        knots => Some(format!("output curve of {} pieces", knots - 1)),
+    }
 }
 
 /// What happens after the operators; said where it was asked for.

@@ -474,8 +474,8 @@ fn bad_models_are_refused_by_field() {
             "field `format`: is `other`",
         ),
         (
-            change("/version", 3.into()),
-            "field `version`: version 3 is not known",
+            change("/version", 4.into()),
+            "field `version`: version 4 is not known",
         ),
         (
             change("/operator", "preisach".into()),

@@ -8,7 +8,7 @@
 //! - [`Inverse`] finds the input that gives a wanted output, exactly, in `O(log K)`.
 //! - [`Estimator`] adapts the weights while the model runs, [`ShiftEstimator`] follows an unknown
 //!   load.
-//! - [`Stages`] stand before and after the operators: thermal body, load, spacing, creep, lag.
+//! - [`Stages`] stand before and behind the operators: [`Body`], [`Axis`], [`Behind`].
 //!
 //! The core does not allocate: the caller provides all memory. It has no unsafe code and does not
 //! panic on any input. Numbers are `f32` or `f64`.
@@ -59,8 +59,9 @@ pub use plane::{Clipped, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use solution::{Solution, Status};
 pub use stages::{
-    Axis, Body, Creep, Decay, Load, Loaded, MAX_CREEP, MAX_PARTS, Parts, Placed, Rates, Sample,
-    StageState, Stages, Wanted, bernstein, mix,
+    Axis, Behind, Body, Constant, Creep, Curve, Decay, Declared, Lag, Load, Loaded, MAX_CREEP,
+    MAX_PARTS, Parts, Placed, RATE_NUMBERS, Range, Rates, STATE_NUMBERS, Sample, StageState,
+    Stages, Unit, Wanted, bernstein, mix,
 };
 pub use state::{State, turn_capacity};
 pub use target::{Direction, Target};

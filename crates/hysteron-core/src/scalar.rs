@@ -29,6 +29,7 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + 'static
 {
     /// Zero.
     const ZERO: Self;

@@ -15,7 +15,7 @@ fn drive(rng: &mut StdRng, owned: &Owned<f64>, plane: &Plane<f64>, load: Option<
     let input = plane.bottom() + rng.random::<f64>() * (plane.max() - plane.bottom());
     let temperature = axis.backward(plane, axis.load.at(load).unwrap(), input);
     owned
-        .body
+        .body()
         .map_or(temperature, |body| body.hold(temperature))
 }
 
@@ -67,6 +67,8 @@ fn outputs_of_the_chain_are_met_by_its_inverse() {
             constants.lag = 0.0;
             constants.offset = 0.0;
             for list in [
+                &mut constants.sums,
+                &mut constants.outputs,
                 &mut constants.coefficients,
                 &mut constants.taus,
                 &mut constants.loads,
@@ -201,6 +203,8 @@ impl Units {
             gains: all(&constants.gains, self.output / self.sum),
             offsets: all(&constants.offsets, self.output),
             spacing: all(&constants.spacing, self.effective),
+            sums: all(&constants.sums, self.output),
+            outputs: all(&constants.outputs, self.output),
             coefficients: constants.coefficients.clone(),
             taus: all(&constants.taus, self.time),
             lag: constants.lag * self.time,
@@ -263,7 +267,7 @@ fn the_units_do_not_matter() {
             let tolerance = [0.0, 0.01 * (high - low)][rng.random_range(0..2)];
             let ends = [0, 1].map(|_| drive(&mut rng, &constants, &plane, now));
             let range = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            let hold = |drive| constants.body.map_or(drive, |body| body.rest(drive));
+            let hold = |drive| constants.body().map_or(drive, |body| body.rest(drive));
             let stays = (hold(range.0), hold(range.1));
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
             let wanted = Wanted {

@@ -6,8 +6,8 @@ mod common;
 
 use common::{OPERATORS, Owned, build, dense, inputs, levels, plane, rng, weights};
 use hysteron_core::{
-    Axis, Body, Creep, Error, Load, Model, Operator, Outcome, Plane, Sample, ShiftEstimator,
-    ShiftOptions, StageState, Stages, State, Target, Turn, Wanted,
+    Axis, Behind, Body, Creep, Error, Lag, Load, Model, Operator, Outcome, Plane, Sample,
+    ShiftEstimator, ShiftOptions, StageState, Stages, State, Target, Turn, Wanted,
 };
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -269,8 +269,11 @@ impl Parts {
                 load: if loaded { load } else { Load::NONE },
                 spacing: &self.spacing,
             },
-            creep: if self.creep { creep } else { Creep::NONE },
-            lag: self.lag,
+            behind: Behind {
+                creep: if self.creep { creep } else { Creep::NONE },
+                lag: Lag { tau: self.lag },
+                ..Behind::NONE
+            },
             offset: 1.5,
             falling: self.falling,
         }

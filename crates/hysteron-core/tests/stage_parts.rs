@@ -5,7 +5,10 @@ mod common;
 
 use common::stages::Constants;
 use common::{build, plane, rng, weights};
-use hysteron_core::{Body, Creep, Error, MAX_CREEP, Operator, Sample, StageState, Stages};
+use hysteron_core::{
+    Behind, Body, Creep, Error, Lag, Operator, RATE_NUMBERS, Range, STATE_NUMBERS, Sample,
+    StageState, Stages,
+};
 use rand::RngExt;
 
 const BODY: Body<f64> = Body {
@@ -16,7 +19,7 @@ const BODY: Body<f64> = Body {
 };
 
 #[test]
-fn creep_and_lag_alone_are_those_of_the_chain() {
+fn stages_behind_alone_are_those_of_the_chain() {
     for seed in 0..200 {
         let mut rng = rng(seed);
         let k = rng.random_range(2..9);
@@ -69,11 +72,14 @@ fn creep_and_lag_alone_are_those_of_the_chain() {
 fn rates_are_exponentials() {
     let stages = Stages {
         body: Some(BODY),
-        creep: Creep {
-            coefficients: &[0.1, 0.2],
-            taus: &[0.7, 5.0],
+        behind: Behind {
+            creep: Creep {
+                coefficients: &[0.1, 0.2],
+                taus: &[0.7, 5.0],
+            },
+            lag: Lag { tau: 0.3 },
+            ..Behind::NONE
         },
-        lag: 0.3,
         ..Stages::NONE
     };
     let dt = 0.4_f64;
@@ -85,7 +91,7 @@ fn rates_are_exponentials() {
     );
     assert_eq!(
         Stages::<f64>::NONE.rates(dt).to_numbers(),
-        [0.0; MAX_CREEP + 3]
+        [0.0; RATE_NUMBERS]
     );
 }
 
@@ -93,18 +99,21 @@ fn rates_are_exponentials() {
 fn states_are_saved_as_numbers() {
     let stages = Stages {
         body: Some(BODY),
-        creep: Creep {
-            coefficients: &[0.1; 4],
-            taus: &[0.7, 5.0, 9.0, 20.0],
+        behind: Behind {
+            creep: Creep {
+                coefficients: &[0.1; 4],
+                taus: &[0.7, 5.0, 9.0, 20.0],
+            },
+            lag: Lag { tau: 0.3 },
+            ..Behind::NONE
         },
-        lag: 0.3,
         ..Stages::NONE
     };
     let mut rng = rng(1);
     let plane = plane(&mut rng, 4);
     let (model, mut state) = build(plane, Operator::Kp, &[1.0; 10]);
     let mut memory = StageState::default();
-    assert_eq!(memory.to_numbers(), [0.0; MAX_CREEP + 3]);
+    assert_eq!(memory.to_numbers(), [0.0; STATE_NUMBERS]);
     assert_eq!((memory.is_started(), memory.temperature()), (false, 0.0));
     assert_eq!(StageState::from_numbers(&memory.to_numbers()), Ok(memory));
     for _ in 0..5 {
@@ -139,9 +148,15 @@ fn states_are_saved_as_numbers() {
 #[test]
 fn each_stage_with_a_time_constant_needs_time() {
     let plain: Stages<'_, f64> = Stages::NONE;
-    let creep = Creep {
-        coefficients: &[0.1],
-        taus: &[1.0],
+    let behind = |name: &str| {
+        let time = |range| matches!(range, Range::Time | Range::TimeOrNone);
+        let stages = Stages::<f64>::declared();
+        let stage = stages.into_iter().find(|stage| stage.name == name).unwrap();
+        assert!(stage.constants.iter().any(|constant| time(constant.range)));
+        Stages::with_constants(|constant| match stage.constants.contains(constant) {
+            true => &[0.1],
+            false => &[],
+        })
     };
     assert!(!plain.is_timed());
     assert!(
@@ -151,8 +166,8 @@ fn each_stage_with_a_time_constant_needs_time() {
         }
         .is_timed()
     );
-    assert!(Stages { creep, ..plain }.is_timed());
-    assert!(Stages { lag: 0.1, ..plain }.is_timed());
+    assert!(behind("creep").unwrap().is_timed());
+    assert!(behind("lag").unwrap().is_timed());
 }
 
 #[test]

@@ -6,8 +6,8 @@ static int begin(const hys_actuator *actuator, hys_actuator_state *state, const 
 {
     size_t k;
     int code = hys_start(model, &state->operators, turns, count);
-    if (code == HYS_OK && actuator->start != NULL) {
-        code = hys_restore(&state->operators, actuator->start, actuator->start_count,
+    if (code == HYS_OK && actuator->start.numbers != NULL) {
+        code = hys_restore(&state->operators, actuator->start.numbers, actuator->start.count,
                            actuator->start_input);
     }
     if (code != HYS_OK) {
@@ -16,10 +16,9 @@ static int begin(const hys_actuator *actuator, hys_actuator_state *state, const 
     state->actuator = actuator;
     state->started = 0;
     state->temperature = ZERO;
-    for (k = 0u; k < HYS_MOST_CREEP; k++) {
-        state->crept[k] = ZERO;
+    for (k = 0u; k < HYS_BEHIND_MEMORY; k++) {
+        state->behind[k] = ZERO;
     }
-    state->lagged = ZERO;
     return HYS_OK;
 }
 
@@ -110,25 +109,6 @@ int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *s
     return begin(actuator, state, &mixed->model, turns, count);
 }
 
-/* Creep and lag of the operators' sum. */
-static hys_real settled(hys_actuator_state *state, hys_real h)
-{
-    const hys_actuator *actuator = state->actuator;
-    int rests = !state->started; /* at the first sample nothing of a past is left */
-    hys_real sum = h;
-    size_t k;
-    for (k = 0u; k < HYS_MOST_CREEP; k++) {
-        hys_real past = rests ? h : state->crept[k];
-        state->crept[k] = past;
-        if (k < actuator->creep_count) {
-            state->crept[k] = h + (past - h) * (rests ? ZERO : actuator->fade[k]);
-            sum = sum + actuator->creep[k] * state->crept[k];
-        }
-    }
-    state->lagged = sum + ((rests ? h : state->lagged) - sum) * (rests ? ZERO : actuator->lag);
-    return state->lagged;
-}
-
 int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, hys_real *output)
 {
     const hys_actuator *actuator;
@@ -156,7 +136,7 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
     if (code != HYS_OK) {
         return code;
     }
-    sum = settled(state, at.gain * sum);
+    sum = behind_forward(state, at.gain * sum);
     state->started = 1;
     state->temperature = temperature;
     *output = at.offset + (actuator->falls ? offset_of(state) - sum : offset_of(state) + sum);
@@ -175,10 +155,9 @@ int hys_actuator_save(const hys_actuator_state *state, hys_real *numbers)
     }
     numbers[0] = state->started ? ONE : ZERO;
     numbers[1] = state->temperature;
-    for (k = 0u; k < HYS_MOST_CREEP; k++) {
-        numbers[2u + k] = state->crept[k];
+    for (k = 0u; k < HYS_BEHIND_MEMORY; k++) {
+        numbers[2u + k] = state->behind[k];
     }
-    numbers[2u + HYS_MOST_CREEP] = state->lagged;
     return HYS_OK;
 }
 
@@ -199,9 +178,8 @@ int hys_actuator_restore(hys_actuator_state *state, const hys_real *numbers)
     }
     state->started = numbers[0] != ZERO;
     state->temperature = numbers[1];
-    for (k = 0u; k < HYS_MOST_CREEP; k++) {
-        state->crept[k] = numbers[2u + k];
+    for (k = 0u; k < HYS_BEHIND_MEMORY; k++) {
+        state->behind[k] = numbers[2u + k];
     }
-    state->lagged = numbers[2u + HYS_MOST_CREEP];
     return HYS_OK;
 }

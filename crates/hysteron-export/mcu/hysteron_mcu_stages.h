@@ -1,10 +1,11 @@
 /* Actuators with stages around the hysteresis, for microcontrollers:
  *
- *   drive -> body -> temperature -> load, spacing -> operators -> creep -> lag -> output
+ *   drive -> body -> temperature -> load, spacing -> operators -> stages behind -> output
  *
  * Body: first-order heating and cooling. Load: curves over the load that shift and scale the axis
- * of the operators and change stroke and offset. Spacing: unequal distances of the levels. Each of
- * the stages may be missing. The inverse is exact for the sample.
+ * of the operators and change stroke and offset. Spacing: unequal distances of the levels. What
+ * stands behind the operators is in hysteron_mcu_behind.h. Each of the stages may be missing. The
+ * inverse is exact for the sample.
  *
  * The sample time is fixed when the model is exported: the factors e^(-dt/tau) are constants. So
  * this needs no library either, and what hysteron_mcu.h says of compilers, errors and threads holds
@@ -24,13 +25,17 @@
 #include "hysteron_mcu.h"
 
 /* Layout of hys_actuator. Models that were exported for another layout do not compile. */
-#define HYS_STAGES_LAYOUT 2
+#define HYS_STAGES_LAYOUT 3
 
-#define HYS_MOST_CREEP 4
 #define HYS_MOST_PARTS 8
 
+/* Stages behind the operators: how many there are, numbers that they remember, and factors. */
+#define HYS_BEHIND 3
+#define HYS_BEHIND_MEMORY 5
+#define HYS_BEHIND_FACTORS 5
+
 /* Numbers that hys_actuator_save writes. */
-#define HYS_STAGE_NUMBERS (HYS_MOST_CREEP + 3)
+#define HYS_STAGE_NUMBERS (2 + HYS_BEHIND_MEMORY)
 
 #ifdef __cplusplus
 extern "C" {
@@ -63,23 +68,31 @@ typedef struct hys_mixed {
     hys_real load, offset;
 } hys_mixed;
 
-/* An actuator. Written by `hysteron export c`; do not change it. A pointer is null where there is
- * no such stage. */
+/* A constant of a stage: a list of numbers; null and 0 where there is no such stage. */
+typedef struct {
+    const hys_real *numbers;
+    size_t count;
+} hys_list;
+
+/* An actuator. Written by `hysteron export c`; do not change it. */
 typedef struct {
     const hys_model *operators;  /* without offset and sign, which are below */
-    const hys_real *loads;       /* loads at which the curves are known, ascending */
-    const hys_real *shifts, *scales, *gains, *offsets; /* the curves at these loads */
-    const hys_real *spacing;     /* the K + 1 corners of the grid, ascending */
-    const hys_real *start;       /* turning points that the model starts with */
-    const hys_parts *parts;      /* weights that depend on the load */
-    size_t load_count, start_count, creep_count;
+    hys_list loads;              /* loads at which the curves are known, ascending */
+    hys_list shifts, scales, gains, offsets; /* the curves at these loads */
+    hys_list spacing;            /* the K + 1 corners of the grid, ascending */
+    hys_list curve_sums, curve_outputs; /* knots of the output curve, ascending */
+    hys_list creep;              /* the share of the sum that creeps, of each term */
+    hys_list start;              /* turning points that the model starts with */
+    const hys_parts *parts;      /* weights that depend on the load; null without */
+    unsigned there;              /* a bit for each stage behind the operators, in their order */
     hys_real start_input;        /* the operators' input at the start */
     hys_real steepest;           /* steepest slope of the spacing; 1 without one */
     hys_real ambient, gain;      /* body: temperature at rest without drive, and per unit of it */
     hys_real heating, cooling;   /* body: e^(-dt/tau) */
-    hys_real creep[HYS_MOST_CREEP], fade[HYS_MOST_CREEP]; /* coefficients, and e^(-dt/tau) */
-    hys_real creep_gain;         /* 1 and the sum of the coefficients */
-    hys_real lag;                /* e^(-dt/tau) of the lag, 0 without one */
+    hys_real factors[HYS_BEHIND_FACTORS]; /* e^(-dt/tau) of the stages behind the operators */
+    hys_real slopes[HYS_BEHIND]; /* the steepest slope at rest of each of them */
+    hys_real steepest_behind;    /* and of all of them */
+    hys_real size_behind;        /* the size of the numbers that they add to the output's */
     hys_real offset;             /* output where the operators' sum is zero */
     hys_real drive_min, drive_max; /* range of the drive, where it is limited */
     unsigned char body;          /* 1 with a body */
@@ -93,9 +106,9 @@ typedef struct {
     hys_state operators;
     const hys_actuator *actuator;
     hys_mixed *mixed;            /* null where the weights do not depend on the load */
-    int started;                 /* 0 before the first sample: body, creep and lag are at rest */
+    int started;                 /* 0 before the first sample: all stages are at rest */
     hys_real temperature;        /* after the last sample; the input itself without a body */
-    hys_real crept[HYS_MOST_CREEP], lagged;
+    hys_real behind[HYS_BEHIND_MEMORY]; /* what the stages behind the operators remember */
 } hys_actuator_state;
 
 /* Starts a state where the model starts. Arguments and errors as for hys_start. A model whose
@@ -110,7 +123,7 @@ int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *s
                              size_t entries);
 
 /* Moves by one sample time, in which `drive` was held, and writes the output at its end. At the
- * first sample body, creep and lag are at rest. A load beyond the outermost ones acts as the
+ * first sample all stages are at rest. A load beyond the outermost ones acts as the
  * nearest one; a model without a load ignores it. Errors: HYS_INPUT_NOT_FINITE, HYS_LOAD. */
 int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, hys_real *output);
 
@@ -126,7 +139,7 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
 int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading,
                               hys_real tolerance, hys_real load, hys_real *drive, int *status);
 
-/* Writes what body, creep and lag remember into HYS_STAGE_NUMBERS numbers. With hys_save of
+/* Writes what the stages remember into HYS_STAGE_NUMBERS numbers. With hys_save of
  * `operators` it is the whole state. */
 int hys_actuator_save(const hys_actuator_state *state, hys_real *numbers);
 

@@ -2,8 +2,7 @@
 #ifndef HYSTERON_MCU_STAGES_INTERNAL_H
 #define HYSTERON_MCU_STAGES_INTERNAL_H
 
-#include "hysteron_mcu_internal.h"
-#include "hysteron_mcu_stages.h"
+#include "hysteron_mcu_behind.h"
 
 /* The distance from one to the next larger number. */
 #define HYS_EPSILON \
@@ -38,68 +37,40 @@ static inline hys_real offset_of(const hys_actuator_state *state)
     return state->mixed == NULL ? state->actuator->offset : state->mixed->offset;
 }
 
-/* The linear piece for x: between knots k and k + 1. Beyond the ends it is the outermost one. */
-static inline size_t piece(const hys_real *knots, size_t count, hys_real x)
-{
-    size_t low = 0u, high = count;
-    while (low < high) { /* at most log2(count) + 1 iterations */
-        size_t middle = low + (high - low) / 2u;
-        if (knots[middle] <= x) {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    if (low == 0u) {
-        return 0u;
-    }
-    return low == count ? count - 2u : low - 1u;
-}
-
-/* The line between two knots. At a knot it is exact. */
-static inline hys_real line(hys_real x, hys_real x0, hys_real x1, hys_real y0, hys_real y1)
-{
-    hys_real slope;
-    if (x == x1) {
-        return y1;
-    }
-    slope = (y1 - y0) / (x1 - x0);
-    return y0 + (x - x0) * slope;
-}
-
 /* A curve at a load within the range, or `none` without the curve. */
-static inline hys_real curve(const hys_actuator *actuator, const hys_real *values, hys_real none,
+static inline hys_real curve(const hys_list *loads, const hys_list *values, hys_real none,
                              hys_real load)
 {
-    const hys_real *loads = actuator->loads;
+    const hys_real *x = loads->numbers, *y = values->numbers;
     size_t k;
-    if (values == NULL) {
+    if (y == NULL) {
         return none;
     }
-    if (actuator->load_count == 1u) {
-        return values[0];
+    if (loads->count == 1u) {
+        return y[0];
     }
-    k = piece(loads, actuator->load_count, load);
-    return line(load, loads[k], loads[k + 1u], values[k], values[k + 1u]);
+    k = piece(x, loads->count, load);
+    return line(load, x[k], x[k + 1u], y[k], y[k + 1u]);
 }
 
 static inline int curves_at(const hys_actuator *actuator, hys_real load, loaded_axis *at)
 {
+    const hys_list *loads = &actuator->loads;
     at->scale = ONE;
     at->shift = ZERO;
     at->gain = ONE;
     at->offset = ZERO;
-    if (actuator->loads == NULL) {
+    if (loads->numbers == NULL) {
         return HYS_OK;
     }
     if (!is_finite(load)) {
         return HYS_LOAD;
     }
-    load = hys_clamp(load, actuator->loads[0], actuator->loads[actuator->load_count - 1u]);
-    at->scale = curve(actuator, actuator->scales, ONE, load);
-    at->shift = curve(actuator, actuator->shifts, ZERO, load);
-    at->gain = curve(actuator, actuator->gains, ONE, load);
-    at->offset = curve(actuator, actuator->offsets, ZERO, load);
+    load = hys_clamp(load, loads->numbers[0], loads->numbers[loads->count - 1u]);
+    at->scale = curve(loads, &actuator->scales, ONE, load);
+    at->shift = curve(loads, &actuator->shifts, ZERO, load);
+    at->gain = curve(loads, &actuator->gains, ONE, load);
+    at->offset = curve(loads, &actuator->offsets, ZERO, load);
     return HYS_OK;
 }
 
@@ -125,7 +96,7 @@ static inline hys_real seen_at(const hys_actuator *actuator, const loaded_axis *
                                hys_real temperature)
 {
     const hys_model *model = actuator->operators;
-    const hys_real *corners = actuator->spacing;
+    const hys_real *corners = actuator->spacing.numbers;
     hys_real effective = at->scale * temperature - at->shift;
     size_t k;
     if (corners == NULL) {

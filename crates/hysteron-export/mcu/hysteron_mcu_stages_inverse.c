@@ -16,28 +16,6 @@ static hys_real inward(const hys_actuator_state *state, hys_real output)
     return state->actuator->falls ? offset - output : output - offset;
 }
 
-/* The operators' sum that gives an output in this sample, and the gain from that sum to the
- * output. */
-static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, hys_real output,
-                       hys_real *gain)
-{
-    const hys_actuator *actuator = state->actuator;
-    hys_real base = ZERO, rise = actuator->creep_gain;
-    size_t k;
-    if (state->started) {
-        hys_real rest = ONE - actuator->lag;
-        rise = ONE;
-        for (k = 0u; k < actuator->creep_count; k++) {
-            base = base + actuator->creep[k] * actuator->fade[k] * state->crept[k];
-            rise = rise + actuator->creep[k] * (ONE - actuator->fade[k]);
-        }
-        base = base * rest + state->lagged * actuator->lag;
-        rise = rise * rest;
-    }
-    *gain = rise * at->gain;
-    return (inward(state, output - at->offset) - base) / *gain;
-}
-
 /* The operators' input for a sum. hys_inverse_step goes there, and everything goes back to where it
  * was. It writes over two turning points that are needed afterwards, those of a corner that merges
  * with another; it writes over others only after the last one. */
@@ -67,7 +45,7 @@ static int solve(hys_state *state, hys_real aim, int heading, hys_real tolerance
 static hys_real temperature_at(const hys_actuator *actuator, const loaded_axis *at, hys_real input)
 {
     const hys_model *model = actuator->operators;
-    const hys_real *corners = actuator->spacing;
+    const hys_real *corners = actuator->spacing.numbers;
     hys_real effective = input;
     if (corners != NULL) {
         size_t k = 0u, end = model->levels - 1u;
@@ -168,20 +146,18 @@ static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, h
     return drive;
 }
 
-/* Whether a target lies beyond the outputs at rest. */
-static int reach_of(const hys_actuator_state *state, const loaded_axis *at, hys_real target,
-                    hys_real tolerance)
+/* Whether an output, without the offset of the load, lies by more than `reach` beyond the ends of
+ * those at rest. */
+static int reach_of(const hys_actuator_state *state, hys_real low, hys_real high, hys_real reach,
+                    hys_real output)
 {
-    const hys_actuator *actuator = state->actuator;
-    const hys_model *model = state->operators.model;
-    hys_real gain = at->gain * actuator->creep_gain;
-    hys_real reach = hys_max(tolerance, gain * model->rounding);
-    hys_real sum = inward(state, target - at->offset);
-    if (sum > gain * own_sum(model, model->total) + reach) {
-        return actuator->falls ? HYS_LOW : HYS_HIGH;
+    int falls = state->actuator->falls;
+    hys_real sum = inward(state, output);
+    if (sum > high + reach) {
+        return falls ? HYS_LOW : HYS_HIGH;
     }
-    if (sum < gain * own_sum(model, ZERO) - reach) {
-        return actuator->falls ? HYS_HIGH : HYS_LOW;
+    if (sum < low - reach) {
+        return falls ? HYS_HIGH : HYS_LOW;
     }
     return HYS_REACHED;
 }
@@ -192,7 +168,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     const hys_actuator *actuator;
     const hys_model *model;
     loaded_axis at;
-    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets, most;
+    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets, low, high, most;
     int found = HYS_LIMITED;
     int code = usable_actuator(state);
     if (code != HYS_OK) {
@@ -219,10 +195,13 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     if (code != HYS_OK) {
         return code;
     }
-    aim = aim_at(state, &at, target, &gain);
+    aim = behind_inverse(state, inward(state, target - at.offset)) / at.gain;
     if (is_finite(aim)) {
         int inner = actuator->falls ? -heading : heading;
-        code = solve(&state->operators, aim, inner, tolerance / gain, &input, &found);
+        /* Within so much of the sum, the output stays within its tolerance wherever it is. */
+        hys_real within =
+            tolerance == ZERO ? ZERO : tolerance / (behind_steepest(state) * at.gain);
+        code = solve(&state->operators, aim, inner, within, &input, &found);
         if (code != HYS_OK) {
             return code;
         }
@@ -239,15 +218,19 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     if (code != HYS_OK) {
         return code;
     }
-    gain = at.gain * actuator->creep_gain;
+    gain = at.gain * actuator->steepest_behind;
     rounding = gain * (model->rounding + model->total * (slack / model->step));
     error = hys_max(reached - target, target - reached);
-    offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target);
-    most = gain * (own_sum(model, model->total) - own_sum(model, ZERO)) * THOUSANDTH;
+    offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target)
+        + actuator->size_behind;
+    low = behind_settled(actuator, at.gain * own_sum(model, ZERO));
+    high = behind_settled(actuator, at.gain * own_sum(model, model->total));
+    most = (high - low) * THOUSANDTH;
     if (error <= hys_max(tolerance, ZERO) + hys_min(rounding + EIGHT_EPSILON * offsets, most)) {
         found = HYS_REACHED;
     } else {
-        int beyond = reach_of(state, &at, target, tolerance);
+        hys_real reach = hys_max(tolerance, gain * model->rounding);
+        int beyond = reach_of(state, low, high, reach, target - at.offset);
         found = beyond != HYS_REACHED ? beyond : found == HYS_PASSED ? HYS_PASSED : HYS_LIMITED;
     }
     *drive = to;

@@ -41,7 +41,7 @@ const ADAPTATION: [(&str, &str); 2] = [
 ];
 
 /// The same for models with stages.
-const STAGES: [(&str, &str); 4] = [
+const STAGES: [(&str, &str); 5] = [
     (
         "hysteron_mcu_stages.h",
         include_str!("../mcu/hysteron_mcu_stages.h"),
@@ -53,6 +53,10 @@ const STAGES: [(&str, &str); 4] = [
     (
         "hysteron_mcu_stages_inverse.c",
         include_str!("../mcu/hysteron_mcu_stages_inverse.c"),
+    ),
+    (
+        "hysteron_mcu_behind.h",
+        include_str!("../mcu/hysteron_mcu_behind.h"),
     ),
     (
         "hysteron_mcu_stages_internal.h",
@@ -121,7 +125,7 @@ pub struct CExport {
     /// outputs. Zero without an inverse.
     pub rounding: f64,
     /// The stages around the operators, in the order of the signal: `body`, `load`, `spacing`,
-    /// `creep`, `lag`.
+    /// and so on.
     pub stages: Vec<&'static str>,
     /// The sample time in seconds that the constants hold for, where the model depends on time.
     pub dt: Option<f64>,

@@ -363,13 +363,14 @@ fn a_plain_model_does_without_the_stages() {
         ..options
     };
     let made = c_sampled(&case.model, folder.path(), &other, &case.sampling).unwrap();
-    assert_eq!(made.stages, ["body", "load", "spacing", "creep", "lag"]);
+    let stages = ["body", "load", "spacing", "curve", "creep", "lag"];
+    assert_eq!(made.stages, stages);
     let after: Vec<Vec<u8>> = files
         .iter()
         .map(|file| std::fs::read(file).unwrap())
         .collect();
     assert!(before == after);
-    assert_eq!(made.files.len(), 10);
+    assert_eq!(made.files.len(), 11);
 }
 
 /// A plain model that starts where its fit found it carries its turning points.

@@ -59,8 +59,8 @@ impl Adapted {
 
 /// Let a model learn from a recording, sample by sample: first simulate, then learn.
 ///
-/// Of a model with a thermal body, unequal levels, creep or a lag, the weights learn and these stages
-/// stay. Errors are then those of the operators, before creep and lag.
+/// Of a model with stages around its operators, the weights learn and the stages stay. Errors are then
+/// those of the operators, in front of the stages behind them.
 ///
 /// Parameters
 /// ----------

@@ -69,6 +69,9 @@ use pyo3::types::{PyDict, PyString};
 /// lag : float, 'auto' or 'off'
 ///     Time constant of a lag after the operators, s, from 0 on; 'auto' as for `creep`. Needs
 ///     `time`.
+/// curve : int, 'auto' or 'off'
+///     Pieces of an output curve behind the operators, up to 100. 'auto' takes a curve only where it
+///     predicts parts of the recordings that were left out.
 /// bootstrap : int, optional
 ///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 25
 ///     levels on 60, from 45 on 0.
@@ -122,7 +125,7 @@ use pyo3::types::{PyDict, PyString};
 #[pyo3(signature = (
     recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None,
     load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -348,6 +351,10 @@ fn fit_options(
                 let seconds = |value: &_| named("lag", "a number, 'auto' or 'off'", value);
                 options.lag = stage(&name, &value, 0.0, seconds)?;
             }
+            "curve" => {
+                let pieces = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.of("curve");
+                options.curve = stage(&name, &value, 0, pieces)?;
+            }
             _ => return Err(no_argument(call, &name, &[names, &OPTIONS].concat())),
         }
     }
@@ -368,7 +375,7 @@ const OPTIONS: [&str; 10] = [
 ];
 
 /// The options of the stages around the operators, which only `fit` has.
-const STAGES: [&str; 5] = ["load_law", "robust", "spacing", "creep", "lag"];
+const STAGES: [&str; 6] = ["load_law", "robust", "spacing", "creep", "lag", "curve"];
 
 const LAWS: [(&str, LoadLaw); 2] = [("shift", LoadLaw::Shift), ("weights", LoadLaw::Weights)];
 

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// A model of an actuator: ``output = offset + sign · Σ μ_ij γ_ij(input)``.
 ///
 /// `fit` may find stages around these operators: a thermal body (`thermal`), a load that shifts their
-/// axis (`load_curves`), levels at unequal distances (`spacing`), `creep` and `lag`. `simulate`,
+/// axis (`load_curves`), levels at unequal distances (`spacing`), and those behind them. `simulate`,
 /// `inverse` and `start` run all of them.
 ///
 /// A model is immutable. Its memory of the input is a `State`, made by `start`.

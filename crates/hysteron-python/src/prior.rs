@@ -11,8 +11,8 @@ use std::sync::Arc;
 /// Parameters
 /// ----------
 /// models : list of Model
-///     Ten or more, fitted, with the same plane, spacing, operator and sign; without a thermal body,
-///     a load, creep and a lag.
+///     Ten or more, fitted, with the same plane, spacing, operator and sign; without a load
+///     and without stages that depend on time.
 ///
 /// Raises
 /// ------

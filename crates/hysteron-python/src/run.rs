@@ -29,14 +29,14 @@ impl Model {
     ///     In the input's unit. With a thermal body it is the drive, each sample held since the one
     ///     before. Values beyond the plane act as its ends.
     /// time : array_like, shape (n,), optional
-    ///     Needed for a model with a thermal body, creep or a lag (`is_timed`), ignored otherwise.
+    ///     Needed for a model that depends on time (`is_timed`), ignored otherwise.
     ///     As in `Recording`.
     /// load : float, or array_like of shape (n,), optional
     ///     For a model that depends on a load. One number is the load of all samples.
     /// start : {'fitted', 'off', 'on'}
     ///     State of the operators before the first sample. 'fitted': where the model starts, which
-    ///     is `fitted_start`, and every operator off where there is none. Body, creep and lag are at
-    ///     rest with the first sample.
+    ///     is `fitted_start`, and every operator off where there is none. All stages are at rest
+    ///     with the first sample.
     ///
     /// Returns
     /// -------
@@ -258,7 +258,7 @@ impl Model {
     /// Returns
     /// -------
     /// State
-    ///     Body, creep and lag are at rest with its first sample.
+    ///     All stages are at rest with its first sample.
     ///
     /// Examples
     /// --------
@@ -276,7 +276,7 @@ impl Model {
     /// ----------
     /// saved : dict
     ///     With 'turning_points' and 'input', and with 'stages' of a model that has stages. Without
-    ///     'stages', body, creep and lag are at rest with the next sample.
+    ///     'stages', all stages are at rest with the next sample.
     ///
     /// Returns
     /// -------

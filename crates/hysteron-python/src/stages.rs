@@ -1,4 +1,4 @@
-//! The stages of a `Model`: thermal body, load, spacing, creep and lag, and where it starts.
+//! The stages of a `Model` around its operators, and where it starts.
 
 use crate::convert::{result, result_of};
 use crate::model::Model;
@@ -39,6 +39,19 @@ impl Model {
         (!spacing.is_empty()).then(|| PyArray1::from_slice(py, spacing))
     }
 
+    /// The constants of all stages, a dict of their names and arrays of numbers; without those of
+    /// stages that are not there.
+    #[getter]
+    fn constants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (constant, numbers) in self.inner.constants().iter() {
+            if !numbers.is_empty() {
+                dict.set_item(constant.name, PyArray1::from_slice(py, numbers))?;
+            }
+        }
+        Ok(dict)
+    }
+
     /// The terms of the creep after the operators, a tuple of `results.CreepTerm`; empty without
     /// creep.
     #[getter]
@@ -54,7 +67,7 @@ impl Model {
         self.inner.lag()
     }
 
-    /// Whether the output depends on time: a thermal body, creep or a lag.
+    /// Whether the output depends on time.
     #[getter]
     fn is_timed(&self) -> bool {
         self.inner.is_timed()

@@ -67,8 +67,8 @@ impl State {
     /// input : float
     ///     With a thermal body the drive, held since the sample before.
     /// dt : float, optional
-    ///     Time since the sample before, s. Needed for a model with a thermal body, creep or a lag
-    ///     from the second sample on.
+    ///     Time since the sample before, s. Needed for a model that depends on time from the
+    ///     second sample on.
     /// load : float, optional
     ///     For a model that depends on a load.
     ///
@@ -186,8 +186,8 @@ impl State {
     /// -------
     /// dict
     ///     With 'turning_points' (ndarray) and 'input' (float). For a model with stages also with
-    ///     'stages' (ndarray, shape (7,)): 0 or 1 for whether there was a sample, the temperature,
-    ///     the output of each of four creep terms, the lagged sum.
+    ///     'stages' (ndarray): 0 or 1 for whether there was a sample, the temperature, and what each
+    ///     stage behind the operators remembers.
     ///
     /// Examples
     /// --------

@@ -100,7 +100,7 @@ impl HeldOut {
 ///
 /// # Errors
 /// - As [`Fit::run`] and [`Recording::split`].
-/// - [`Error::Fit`] for rows of several recordings; for a model with a thermal body, creep or a lag
+/// - [`Error::Fit`] for rows of several recordings; for a model that depends on time
 ///   if anything else is held out than rows at the end, because such a model needs every sample.
 pub fn fit_holding_out(
     fit: &Fit<'_>,
@@ -131,10 +131,10 @@ pub fn fit_holding_out(
         false => fit.clone(),
     };
     let mut model = fit.run(&training)?;
-    let needs_time = model.thermal.is_some() || !model.creep().is_empty() || model.lag() > 0.0;
+    let needs_time = model.is_timed();
     if needs_time && !splits.iter().all(|split| split.is_head) {
         return Err(Error::Fit(
-            "a thermal body, creep and a lag need every sample before a row: hold out rows at the \
+            "a model that depends on time needs every sample before a row: hold out rows at the \
              end, or another recording"
                 .into(),
         ));

@@ -89,7 +89,7 @@ pub use model::{
     Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Excitation, FirstOrder,
     FitSummary, FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model,
     OperatorState, Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth,
-    Solver, Start, State, Surroundings, Validation, Wanted,
+    Solver, StageConstants, Start, State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, Doubt, Judged, LowPass, Preparation, PrepareOptions, RateDependence, Repairs,

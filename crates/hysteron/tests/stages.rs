@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Auto, CreepTerm, Fit, FitOptions, FittedStart, HoldOut, LoadLaw, Model, Operator, Plane,
-    Policy, Recording, Sample, Sign, Spacing, Start, Status, Surroundings, Target, Wanted,
+    Auto, Choice, CreepTerm, Fit, FitOptions, FittedStart, HoldOut, LoadLaw, Model, Operator,
+    Plane, Policy, Recording, Sample, Sign, Spacing, Start, Status, Surroundings, Target, Wanted,
     evaluate, evaluate_from, fit_holding_out,
 };
 use rand::{RngExt, SeedableRng};
@@ -59,7 +59,7 @@ fn a_file_of_version_2_is_kept_to_the_last_digit() {
 fn wrong_fields_of_version_2_are_named() {
     let cases = [
         (r#""version": 2"#, r#""version": 1"#, "load.curves"),
-        (r#""version": 2"#, r#""version": 3"#, "version"),
+        (r#""version": 2"#, r#""version": 4"#, "version"),
         (
             "[50.0, 100.0, 200.0]",
             "[50.0, 200.0, 100.0]",
@@ -439,5 +439,157 @@ fn the_noise_of_a_load_cell_is_not_another_load() {
             }
             Err(error) => assert!(!accepted, "{load}: {error}"),
         }
+    }
+}
+
+/// A model with an output curve, falling.
+fn curved() -> Model {
+    let plane = Plane::new(0.0, 1.0, 2).unwrap();
+    let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.5, Sign::Negative).unwrap();
+    let knots = [
+        ("curve_sums", vec![0.0, 1.0, 3.0]),
+        ("curve_outputs", vec![0.0, 4.0, 5.0]),
+    ];
+    model.with_behind(knots).unwrap()
+}
+
+#[test]
+fn a_file_of_version_3_has_the_stages_that_version_2_does_not_know() {
+    let model = curved();
+    let text = model.to_json();
+    assert!(text.contains(r#""version":3"#) && text.contains(r#""curve_sums":[0.0,1.0,3.0]"#));
+    assert_eq!(Model::from_json(&text).unwrap(), model);
+    let constants = model.constants();
+    assert_eq!(constants.get("curve_outputs"), [0.0, 4.0, 5.0]);
+    assert_eq!(model.output_range(), (0.5, -4.5));
+    for (from, to, said) in [
+        (
+            r#""version":3"#,
+            r#""version":2"#,
+            "field `stages`: this needs `version` 3",
+        ),
+        (
+            "curve_sums",
+            "none",
+            "field `stages.none`: there is no such constant",
+        ),
+        (
+            "curve_sums",
+            "lag",
+            "field `stages.lag`: there is no such constant",
+        ),
+        (
+            "[0.0,1.0,3.0]",
+            "[0.0,3.0,1.0]",
+            "field `stages.curve_sums`",
+        ),
+        (
+            "[0.0,4.0,5.0]",
+            "[0.0,5.0,4.0]",
+            "field `stages.curve_outputs`",
+        ),
+        ("[0.0,4.0,5.0]", "[0.0,5.0]", "field `stages.curve_sums`"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let error = Model::from_json(&text.replace(from, to))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(said), "{from} -> {to}: {error}");
+    }
+}
+
+#[test]
+fn a_curve_is_taken_only_where_there_is_one() {
+    let plane = Plane::new(0.1, 1.0, 10).unwrap();
+    // Plays: weights that depend on the width alone.
+    let weight = |i: usize, j: usize| {
+        if j - i < 4 {
+            0.1 / (1 + j - i) as f64
+        } else {
+            0.0
+        }
+    };
+    let weights = (1..=10).flat_map(|j| (1..=j).map(move |i| weight(i, j)));
+    let model = Model::new(Operator::Mkp, plane, weights.collect(), 0.5, Sign::Negative).unwrap();
+    let input: Vec<f64> = (0..600)
+        .map(|n| 0.5 - (0.5 - 0.0006 * f64::from(n)) * (f64::from(n) * 0.11).cos())
+        .collect();
+    let total: f64 = model.weights().iter().sum();
+    let knots = |shares: [f64; 3]| shares.map(|share| share * total).to_vec();
+    let bent = model.clone().with_behind([
+        ("curve_sums", knots([0.0, 0.4, 1.0])),
+        ("curve_outputs", knots([0.0, 0.2, 1.0])),
+    ]);
+    for (model, pieces) in [(model, 0), (bent.unwrap(), 1)] {
+        let recording = Recording::new(input.clone(), model.simulate(&input).unwrap()).unwrap();
+        let options = FitOptions {
+            levels: 10,
+            curve: Choice::Auto,
+            ..FitOptions::default()
+        };
+        let fitted = Fit::from(&options).run(&recording).unwrap();
+        let found = fitted.constants().get("curve_sums").len();
+        assert_eq!(found.min(1), pieces, "{found} knots");
+        // The inverse of the chain meets its own outputs.
+        let outputs = fitted.simulate(&input).unwrap();
+        let mut state = fitted.start();
+        let inverse = fitted.inverse().unwrap();
+        for output in outputs {
+            let found = inverse
+                .step(&mut state, hysteron::Target::new(output))
+                .unwrap();
+            assert_eq!(found.status, hysteron::Status::Ok);
+        }
+        if pieces > 0 {
+            let plain = Fit::from(FitOptions {
+                curve: Choice::Fixed(0),
+                ..options
+            });
+            let plain = plain.run(&recording).unwrap();
+            // Loops that the fit did not see: of other sizes, about other middles.
+            let other: Vec<f64> = (0..400)
+                .map(|n| 0.45 + 0.3 * (f64::from(n) * 0.17).sin() * (f64::from(n) * 0.013).cos())
+                .collect();
+            let truth = model.simulate(&other).unwrap();
+            let rmse = |found: &Model| {
+                let outputs = found.simulate(&other).unwrap();
+                let squares = outputs.iter().zip(&truth).map(|(a, b)| (a - b).powi(2));
+                (squares.sum::<f64>() / truth.len() as f64).sqrt()
+            };
+            let (bent, plain) = (rmse(&fitted), rmse(&plain));
+            assert!(bent < 0.5 * plain, "{bent} against {plain}");
+        }
+    }
+}
+
+#[test]
+fn the_page_has_the_constants_that_stages_declare() {
+    let page = include_str!("../../../docs/model.md");
+    for stage in hysteron_core::Stages::<f64>::declared() {
+        for constant in stage.constants {
+            use hysteron_core::Unit;
+            let unit = match constant.unit {
+                Unit::One => "1",
+                Unit::Second => "s",
+                Unit::Temperature => "temperature",
+                Unit::TemperaturePerDrive => "temperature per drive",
+                Unit::Load => "load",
+                Unit::Output => "output",
+            };
+            let row = format!(
+                "| {} | `{}` | {unit} | {} | {} |",
+                stage.name,
+                constant.name,
+                constant.range.words(),
+                constant.meaning
+            );
+            assert!(page.contains(&row), "docs/model.md has no row {row}");
+        }
+        let row = format!("| {} | ", stage.name);
+        assert!(
+            page.contains(&row),
+            "docs/model.md does not name {}",
+            stage.name
+        );
     }
 }

@@ -4,21 +4,17 @@ use crate::port::{count, depth, note, say};
 use crate::run::{Core, FORWARD, MOST, Memory, ModelData, Number, Tally, made, note_all};
 use core::hint::black_box;
 use hysteron_core::{
-    Axis, Body, Creep, Direction, Error, Load, MAX_CREEP, Model, Parts, Placed, Plane, Rates,
-    StageState, Stages, Target, Turn, Wanted, table_len, turn_capacity,
+    Direction, Error, Model, Parts, Placed, Plane, Rates, StageState, Stages, Target, Turn, Wanted, table_len, turn_capacity,
 };
 
 /// Model and stages as in the model file.
 pub struct Staged {
     pub model: ModelData,
-    pub body: Option<[f64; 4]>,
-    pub curves: [&'static [f64]; 5],
+    /// The constants of all stages, by the names that they declare.
+    pub constants: &'static [(&'static str, &'static [f64])],
     /// Offset and weights of each part, where the weights depend on the load.
     pub parts: &'static [(f64, &'static [f64])],
     pub range: (f64, f64),
-    pub spacing: &'static [f64],
-    pub creep: [&'static [f64]; 2],
-    pub lag: f64,
     pub drive: Option<(f64, f64)>,
     pub dt: Option<f64>,
 }
@@ -31,15 +27,11 @@ pub struct StagedRun {
     pub steps: &'static [(i8, f64, f64)],
 }
 
-/// The largest number of loads for which there is memory.
-const LOADS: usize = 8;
+/// Room for the constants of the stages, beside the spacing.
+const ROOM: usize = 64;
 
-/// The arrays of the stages in the number type.
-struct Numbers<T> {
-    curves: [[T; LOADS]; 5],
-    spacing: [T; MOST + 1],
-    creep: [[T; MAX_CREEP]; 2],
-}
+/// The constants of the stages in the number type, one list after the other.
+struct Numbers<T>([T; ROOM + MOST + 1]);
 
 fn fill<T: Number>(place: &mut [T], numbers: &[f64]) {
     for (place, &number) in place.iter_mut().zip(numbers) {
@@ -49,52 +41,31 @@ fn fill<T: Number>(place: &mut [T], numbers: &[f64]) {
 
 impl<T: Number> Numbers<T> {
     fn of(data: &Staged) -> Self {
-        let mut all = Self {
-            curves: [[T::ZERO; LOADS]; 5],
-            spacing: [T::ZERO; MOST + 1],
-            creep: [[T::ZERO; MAX_CREEP]; 2],
-        };
-        for (place, numbers) in all.curves.iter_mut().zip(data.curves) {
-            fill(place, numbers);
-        }
-        fill(&mut all.spacing, data.spacing);
-        for (place, numbers) in all.creep.iter_mut().zip(data.creep) {
-            fill(place, numbers);
+        let mut all = Self([T::ZERO; ROOM + MOST + 1]);
+        let mut at = 0;
+        for (_, list) in data.constants {
+            fill(&mut all.0[at..at + list.len()], list);
+            at += list.len();
         }
         all
     }
 
-    fn stages(&self, data: &Staged) -> Stages<'_, T> {
-        let curve = |k: usize| &self.curves[k][..data.curves[k].len()];
-        let creep = |k: usize| &self.creep[k][..data.creep[k].len()];
-        Stages {
-            body: data.body.map(|body| {
-                let [ambient, gain, tau_heating, tau_cooling] = body.map(T::of);
-                Body {
-                    ambient,
-                    gain,
-                    tau_heating,
-                    tau_cooling,
+    fn stages(&self, data: &Staged) -> Result<Stages<'_, T>, Error> {
+        let list = |name: &str| {
+            let mut at = 0;
+            for (known, list) in data.constants {
+                if *known == name {
+                    return &self.0[at..at + list.len()];
                 }
-            }),
-            axis: Axis {
-                load: Load {
-                    loads: curve(0),
-                    shifts: curve(1),
-                    scales: curve(2),
-                    gains: curve(3),
-                    offsets: curve(4),
-                },
-                spacing: &self.spacing[..data.spacing.len()],
-            },
-            creep: Creep {
-                coefficients: creep(0),
-                taus: creep(1),
-            },
-            lag: T::of(data.lag),
+                at += list.len();
+            }
+            &[]
+        };
+        Ok(Stages {
             offset: T::of(data.model.offset),
             falling: data.model.sign < 0.0,
-        }
+            ..Stages::with_constants(|constant| list(constant.name))?
+        })
     }
 }
 
@@ -226,7 +197,7 @@ pub fn one<T: Number>(run: &StagedRun) -> Result<(), Error> {
     let weights = &weights[..data.model.weights.len()];
     let model = Model::new(plane, data.model.operator, weights, &mut table[..])?;
     let numbers = Numbers::<T>::of(data);
-    let stages = numbers.stages(data);
+    let stages = numbers.stages(data)?;
     stages.check(&model)?;
     let (low, high) = data.drive.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let parts = by_load.parts(data);

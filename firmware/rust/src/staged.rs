@@ -18,17 +18,11 @@ const DT: f64 = 0.125;
 
 pub struct StagedModel {
     pub model: Model,
-    /// Ambient temperature, gain, time constants of heating and cooling.
-    pub body: Option<[f64; 4]>,
-    /// Loads, shifts, scales, gains, offsets.
-    pub curves: [Vec<f64>; 5],
+    /// The constants of all stages, by the names that they declare.
+    pub constants: Vec<(String, Vec<f64>)>,
     /// Offset and weights of each part and the range of the load, where the weights depend on it.
     pub parts: Vec<(f64, Vec<f64>)>,
     pub range: (f64, f64),
-    pub spacing: Vec<f64>,
-    /// Coefficients and time constants.
-    pub creep: [Vec<f64>; 2],
-    pub lag: f64,
     /// The range of the drive, where it is limited.
     pub drive: Option<(f64, f64)>,
     /// The time step; `None` for a model that does not depend on time.
@@ -79,36 +73,59 @@ fn fixed(run: &Value) -> Option<f64> {
 }
 
 fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
-    let thermal = &json["thermal"];
-    let body = ["ambient", "gain", "tau_heating", "tau_cooling"];
     let load = &json["load"];
-    let curves = &load["curves"];
     let parts = load["parts"].as_array().into_iter().flatten();
     let parts: Vec<_> = parts
         .map(|part| (number(&part["offset"]), numbers(&part["weights"])))
         .collect();
     let varies = parts.len() > 1;
-    let terms: Vec<&Value> = json["creep"].as_array().into_iter().flatten().collect();
-    let creep = ["coefficient", "tau"];
-    let lag = json["lag"].as_f64().unwrap_or(0.0);
-    let timed = !thermal.is_null() || !terms.is_empty() || lag > 0.0;
+    let constants = constants(&json);
+    let timed = constants.iter().any(|(name, _)| TIMED.contains(&name.as_str()));
     let drive = &json["drive"];
     StagedModel {
-        body: (!thermal.is_null()).then(|| body.map(|what| number(&thermal[what]))),
-        curves: ["loads", "shifts", "scales", "gains", "offsets"]
-            .map(|curve| numbers(&curves[curve])),
+        constants,
         range: match varies {
             true => (number(&load["min"]), number(&load["max"])),
             false => (0.0, 0.0),
         },
         parts: if varies { parts } else { Vec::new() },
-        spacing: numbers(&json["spacing"]),
-        creep: creep.map(|what| terms.iter().map(|term| number(&term[what])).collect()),
-        lag,
         drive: (!drive.is_null()).then(|| (number(&drive["min"]), number(&drive["max"]))),
         dt: dt.filter(|_| timed),
         model: model(name, json),
     }
+}
+
+/// Constants of stages that depend on time.
+const TIMED: [&str; 3] = ["tau_heating", "creep_taus", "lag"];
+
+/// The constants of a model file, by their names; those of version 3 as they stand there.
+fn constants(json: &Value) -> Vec<(String, Vec<f64>)> {
+    let single = |value: &Value| value.as_f64().into_iter().collect::<Vec<f64>>();
+    let terms: Vec<&Value> = json["creep"].as_array().into_iter().flatten().collect();
+    let terms = |what: &str| terms.iter().map(|term| number(&term[what])).collect();
+    let thermal = &json["thermal"];
+    let body = ["gain", "tau_heating", "tau_cooling"].map(|name| (name, single(&thermal[name])));
+    let ambient = match thermal.is_null() {
+        true => Vec::new(),
+        false => vec![thermal["ambient"].as_f64().unwrap_or(0.0)],
+    };
+    let curves = &json["load"]["curves"];
+    let curves = ["loads", "shifts", "scales", "gains", "offsets"]
+        .map(|name| (name, numbers(&curves[name])));
+    let others = [
+        ("ambient", ambient),
+        ("spacing", numbers(&json["spacing"])),
+        ("creep", terms("coefficient")),
+        ("creep_taus", terms("tau")),
+        ("lag", single(&json["lag"])),
+    ];
+    let of_version_3 = json["stages"].as_object().into_iter().flatten();
+    let of_version_3 = of_version_3.map(|(name, list)| (name.clone(), numbers(list)));
+    let all = body.into_iter().chain(curves).chain(others);
+    all.map(|(name, list)| (name.to_owned(), list))
+        .chain(of_version_3)
+        .filter(|(_, list)| !list.is_empty())
+        .collect()
 }
 
 fn vector(name: &str, model: usize, file: &Value, run: &Value) -> StagedRun {
@@ -197,9 +214,10 @@ fn measured(what: &str) -> StagedModel {
 /// changes at each sample.
 fn measured_runs(staged: &StagedModel, number: usize) -> Vec<StagedRun> {
     let total: f64 = staged.model.weights.iter().sum();
-    let (low, high) = match (&staged.drive, staged.spacing.as_slice()) {
+    let spacing = staged.constants.iter().find(|(name, _)| name == "spacing");
+    let (low, high) = match (&staged.drive, spacing.map(|(_, corners)| corners.as_slice())) {
         (Some(range), _) => *range,
-        (None, [low, .., high]) => (*low, *high),
+        (None, Some([low, .., high])) => (*low, *high),
         _ => (staged.model.min, staged.model.max),
     };
     let mut random = Random(7);

@@ -4,8 +4,8 @@ use super::by_load::ByLoad;
 use super::stages::Constants;
 use super::{Problem, Result};
 use hysteron_core::{
-    Clipped, Direction, Model, Output, Placed, Sample, Solution, StageState, Target, Turn, Wanted,
-    turn_capacity,
+    Clipped, Direction, Model, Output, Placed, Sample, Solution, StageState, Stages, Target, Turn,
+    Wanted, turn_capacity,
 };
 
 /// What a block remembers.
@@ -94,14 +94,18 @@ impl Block {
 
     /// Whether there is a load among the variables.
     pub(crate) fn is_loaded(&self) -> bool {
-        let stages = self.stages.as_ref();
-        self.by_load.is_some() || stages.is_some_and(|stages| !stages.loads.is_empty())
+        self.by_load.is_some() || self.around(|stages| !stages.axis.load.loads.is_empty())
     }
 
     /// Whether there is a temperature among the variables.
     pub(crate) fn has_body(&self) -> bool {
+        self.around(|stages| stages.body.is_some())
+    }
+
+    /// Whether there are stages of which that is true.
+    fn around(&self, is: impl Fn(Stages<'_, f64>) -> bool) -> bool {
         let stages = self.stages.as_ref();
-        stages.is_some_and(|stages| stages.body.is_some())
+        stages.is_some_and(|stages| stages.core(self.offset, self.sign).is_ok_and(is))
     }
 
     pub(crate) fn start(&self, on: bool) -> Result<State> {
@@ -168,7 +172,7 @@ impl Block {
             dt: Some(dt),
             load: Some(inputs.load),
         };
-        let mut stages = stages.core(self.offset, self.sign);
+        let mut stages = stages.core(self.offset, self.sign)?;
         stages.accepts(&state.stages, sample)?;
         stages.offset = self.place(state, inputs.load)?;
         let model = state
@@ -199,7 +203,7 @@ impl Block {
             drive: stages.drive,
             ..target.into()
         };
-        let mut stages = stages.core(self.offset, self.sign);
+        let mut stages = stages.core(self.offset, self.sign)?;
         stages.offset = self.place(state, inputs.load)?;
         let model = state
             .mixed

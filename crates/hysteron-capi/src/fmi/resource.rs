@@ -31,9 +31,8 @@
 //! lag 0.2
 //! ```
 //! These are the start values of signal and load; the operators' input and turning points at the
-//! start; ambient temperature, gain and time constants of heating and cooling; the range of the
-//! drive; the curves over the load; the corners of the grid; coefficients and time constants of the
-//! creep; the time constant of the lag.
+//! start; the constants of the body; the range of the drive; the constants of the other stages, as
+//! they declare them ([`hysteron_core::Declared`]).
 //!
 //! A model whose weights depend on the load has version 3. After `lag` it has the range of the loads
 //! and the offset of each part, and then the weights of the parts, one after the other:
@@ -43,6 +42,10 @@
 //! parts 1.0 2.5
 //! weights 420
 //! ```
+//!
+//! Versions 4 and 5 are versions 2 and 3 with a line for each constant of every stage, in the order in
+//! which the stages are declared. They are written where a stage is there that version 2 does not
+//! have.
 //!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
 //! fewest digits that give the same number when it is read.
@@ -58,9 +61,9 @@ use std::str::FromStr;
 const FILE: &str = "model.txt";
 const HEAD: &str = "hysteron-fmu 1";
 /// The first line of a model with stages or with a start.
-const HEAD_STAGES: &str = "hysteron-fmu 2";
+const HEAD_STAGES: [&str; 2] = ["hysteron-fmu 2", "hysteron-fmu 4"];
 /// That of a model whose weights depend on the load.
-const HEAD_PARTS: &str = "hysteron-fmu 3";
+const HEAD_PARTS: [&str; 2] = ["hysteron-fmu 3", "hysteron-fmu 5"];
 
 /// Reads the model in the folder of the FMU's resources. Errors name file and line.
 pub(crate) fn read(folder: &Path) -> Result<Block> {
@@ -167,7 +170,8 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         line: 0,
     };
     let head = lines.next()?;
-    if ![HEAD, HEAD_STAGES, HEAD_PARTS].contains(&head) {
+    let by_load = HEAD_PARTS.contains(&head);
+    if !(head == HEAD || by_load || HEAD_STAGES.contains(&head)) {
         let head: String = head.chars().take(2 * HEAD.len()).collect();
         return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
     }
@@ -200,9 +204,12 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     };
     let more = match head == HEAD {
         true => None,
-        false => Some(More::read(&mut lines)?),
+        false => {
+            let whole = head == HEAD_STAGES[1] || head == HEAD_PARTS[1];
+            Some(More::read(&mut lines, whole)?)
+        }
     };
-    let by_load = match head == HEAD_PARTS {
+    let by_load = match by_load {
         true => Some(ByLoad::read(&mut lines)?),
         false => None,
     };
@@ -258,14 +265,17 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         model,
     };
     if let Some(more) = more {
-        let stages = more.stages.core(offset, sign);
-        let checked = stages.check(&block.model);
-        checked.or_else(|error| lines.fault(error.to_string()))?;
+        let core = more.stages.core(offset, sign);
+        let checked = core.and_then(|stages| {
+            stages.check(&block.model)?;
+            Ok(stages.is_none())
+        });
+        let bare = checked.or_else(|error| lines.fault(error.to_string()))?;
         let by_load = block.by_load.as_ref();
         let checked = by_load.map_or(Ok(()), |by_load| by_load.core().check(&block.model));
         checked.or_else(|error| lines.fault(error.to_string()))?;
         (block.start, block.first) = (more.start, more.first);
-        let needed = |stages: &Constants| !stages.is_none() || block.by_load.is_some();
+        let needed = |_: &Constants| !bare || block.by_load.is_some();
         block.stages = Some(more.stages).filter(needed);
     }
     if let Err(problem) = block.start(false) {

@@ -4,7 +4,7 @@ use super::block::{Block, Inputs, Outputs};
 use super::instance::{Instance, Phase, Run};
 use super::{Problem, Result, checksum};
 use crate::handles::Table;
-use hysteron_core::{StageState, Status};
+use hysteron_core::{STATE_NUMBERS, StageState, Status};
 use std::sync::{Mutex, PoisonError};
 
 /// A run at some time, and the checksum of its model.
@@ -91,8 +91,7 @@ const PHASES: [Phase; 4] = [
 ];
 
 impl Run {
-    /// Words of 8 bytes, little-endian: mark, model, 19 that [`Run::of_bytes`] reads in the same
-    /// order, number of turning points, these, checksum.
+    /// Words of 8 bytes, little-endian, in the order in which [`Run::of_bytes`] reads them.
     fn bytes(&self, block: &Block) -> Vec<u8> {
         let points = self.state.operators.turning_points();
         let points: Vec<u64> = points.map(f64::to_bits).collect();
@@ -125,7 +124,7 @@ impl Run {
 
     fn of_bytes(block: &Block, bytes: &[u8]) -> Result<Self> {
         let broken = || Problem::new("the serialised state is cut or changed");
-        let (words, rest) = bytes.as_chunks::<8>();
+        let (words, cut) = bytes.as_chunks::<8>();
         let words: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
         let [
             mark,
@@ -141,18 +140,13 @@ impl Run {
             result,
             flag,
             temperature,
-            s0,
-            s1,
-            s2,
-            s3,
-            s4,
-            s5,
-            s6,
-            input,
-            count,
-            points @ ..,
+            rest @ ..,
             sum,
         ] = words.as_slice()
+        else {
+            return Err(broken());
+        };
+        let Some((stages, [input, count, points @ ..])) = rest.split_first_chunk::<STATE_NUMBERS>()
         else {
             return Err(broken());
         };
@@ -162,7 +156,7 @@ impl Run {
             ));
         }
         let whole = checksum(&bytes[..8 * (words.len() - 1)]) == *sum;
-        if !whole || !rest.is_empty() || *count != points.len() as u64 {
+        if !whole || !cut.is_empty() || *count != points.len() as u64 {
             return Err(broken());
         }
         if *model != block.checksum {
@@ -184,7 +178,7 @@ impl Run {
         block
             .model
             .restore(&mut state.operators, &points, number(input))?;
-        state.stages = StageState::from_numbers(&[s0, s1, s2, s3, s4, s5, s6].map(number))?;
+        state.stages = StageState::from_numbers(&stages.map(|word| f64::from_bits(word)))?;
         let run = Self {
             phase: *usize::try_from(*phase)
                 .ok()

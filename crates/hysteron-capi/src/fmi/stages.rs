@@ -1,56 +1,45 @@
 //! The stages around the operators of a block.
 
 use super::resource::{Lines, Parsed};
-use hysteron_core::{Axis, Body, Creep, Load, Stages};
+use hysteron_core::{Error, Stages};
 
-/// Their constants; what is empty is not there.
+/// Their constants.
 #[derive(Debug)]
 pub(crate) struct Constants {
-    pub(crate) body: Option<Body<f64>>,
     /// The range of the drive in the inverse.
     pub(crate) drive: (f64, f64),
-    pub(crate) loads: Vec<f64>,
-    pub(crate) shifts: Vec<f64>,
-    pub(crate) scales: Vec<f64>,
-    pub(crate) gains: Vec<f64>,
-    pub(crate) offsets: Vec<f64>,
-    pub(crate) spacing: Vec<f64>,
-    pub(crate) creep: Vec<f64>,
-    pub(crate) taus: Vec<f64>,
-    pub(crate) lag: f64,
+    /// In the order of [`Stages::declared`].
+    lists: Vec<Vec<f64>>,
 }
 
 impl Constants {
     /// As the core takes them, with offset and sign of the output.
-    pub(crate) fn core(&self, offset: f64, sign: f64) -> Stages<'_, f64> {
-        Stages {
-            body: self.body,
-            axis: Axis {
-                load: Load {
-                    loads: &self.loads,
-                    shifts: &self.shifts,
-                    scales: &self.scales,
-                    gains: &self.gains,
-                    offsets: &self.offsets,
-                },
-                spacing: &self.spacing,
-            },
-            creep: Creep {
-                coefficients: &self.creep,
-                taus: &self.taus,
-            },
-            lag: self.lag,
+    pub(crate) fn core(&self, offset: f64, sign: f64) -> Result<Stages<'_, f64>, Error> {
+        let mut lists = self.lists.iter();
+        let stages = Stages::of_lists(|| lists.next().map_or(&[] as &[f64], Vec::as_slice))?;
+        Ok(Stages {
             offset,
             falling: sign < 0.0,
-        }
-    }
-
-    /// Whether there is a stage at all.
-    pub(crate) fn is_none(&self) -> bool {
-        let stages = self.core(0.0, 1.0);
-        !stages.is_timed() && self.loads.is_empty() && self.spacing.is_empty()
+            ..stages
+        })
     }
 }
+
+/// How many constants the body has. They have one line.
+const BODY: usize = 4;
+
+/// The constants that have a line in every version, and what the line is called.
+const VERSION_2: [(&str, &str); 9] = [
+    ("loads", "loads"),
+    ("shifts", "shifts"),
+    ("scales", "scales"),
+    ("gains", "gains"),
+    ("offsets", "offsets"),
+    ("spacing", "spacing"),
+    ("creep", "creep"),
+    ("creep_taus", "taus"),
+    ("lag", "lag"),
+];
 
 /// What a model's text of version 2 has more.
 pub(crate) struct More {
@@ -60,8 +49,8 @@ pub(crate) struct More {
 }
 
 impl More {
-    /// Reads its lines.
-    pub(crate) fn read(lines: &mut Lines<'_>) -> Parsed<Self> {
+    /// Reads its lines: those of version 2, or one for each constant of a stage (`whole`).
+    pub(crate) fn read(lines: &mut Lines<'_>, whole: bool) -> Parsed<Self> {
         let first = match lines.numbers("first")?[..] {
             [signal, load] => (signal, load),
             _ => return lines.fault("`first` and 2 numbers are expected"),
@@ -70,38 +59,29 @@ impl More {
             [] => None,
             [input, points @ ..] => Some((points.to_vec(), *input)),
         };
-        let body = match lines.numbers("body")?[..] {
-            [] => None,
-            [ambient, gain, tau_heating, tau_cooling] => Some(Body {
-                ambient,
-                gain,
-                tau_heating,
-                tau_cooling,
-            }),
-            _ => return lines.fault("`body` and 4 numbers are expected"),
-        };
+        let body = lines.numbers("body")?;
+        if !(body.is_empty() || body.len() == BODY) {
+            return lines.fault(format!("`body` and {BODY} numbers are expected"));
+        }
         let drive = match lines.numbers("drive")?[..] {
             [] => (f64::NEG_INFINITY, f64::INFINITY),
             [low, high] if low <= high => (low, high),
             _ => return lines.fault("`drive` and 2 numbers in order are expected"),
         };
-        let mut stages = Constants {
-            body,
-            drive,
-            loads: lines.numbers("loads")?,
-            shifts: lines.numbers("shifts")?,
-            scales: lines.numbers("scales")?,
-            gains: lines.numbers("gains")?,
-            offsets: lines.numbers("offsets")?,
-            spacing: lines.numbers("spacing")?,
-            creep: lines.numbers("creep")?,
-            taus: lines.numbers("taus")?,
-            lag: 0.0,
-        };
-        stages.lag = match lines.numbers("lag")?[..] {
-            [lag] => lag,
-            _ => return lines.fault("`lag` and 1 number is expected"),
-        };
+        let single = |n: usize| body.get(n).map_or(Vec::new(), |number| vec![*number]);
+        let mut lists: Vec<Vec<f64>> = (0..BODY).map(single).collect();
+        let constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
+        for constant in constants.skip(BODY) {
+            let of_version_2 = VERSION_2.iter().find(|(name, _)| *name == constant.name);
+            lists.push(match of_version_2 {
+                Some((_, line)) => lines.numbers(line)?,
+                None if whole => lines.numbers(constant.name)?,
+                None => Vec::new(),
+            });
+        }
+        let stages = Constants { drive, lists };
+        let built = stages.core(0.0, 1.0).map(|_| ());
+        built.or_else(|error| lines.fault(error.to_string()))?;
         Ok(Self {
             first,
             start,

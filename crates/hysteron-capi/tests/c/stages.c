@@ -93,7 +93,7 @@ static void over_own_memory(uint64_t model) {
     struct HysteronCoreModel *operators;
     struct HysteronCoreState *state;
     struct HysteronCoreStages *stages;
-    double weights[6], a, b;
+    double weights[6], a, b, wrong = -1.0;
     size_t bytes, found;
     void *memory[3];
     uint64_t by_handle;
@@ -131,7 +131,11 @@ static void over_own_memory(uint64_t model) {
     REQUIRE(hysteron_core_stages_step(stages, operators, state, &past, 0.5, NAN, 100.0, &b, NULL) == HYSTERON_TIME_STEP);
     REQUIRE(hysteron_core_stages_step(stages, operators, state, &past, 0.5, 0.1, NAN, &b, NULL) == HYSTERON_LOAD);
     REQUIRE(hysteron_core_stages_step(stages, operators, state, NULL, 0.5, 0.1, 100.0, &b, NULL) == HYSTERON_NULL);
-    constants.lag = -1.0;
+    for (n = 0; constants.constants[n].name != NULL; n++) {
+        if (strcmp(constants.constants[n].name, "lag") == 0) {
+            constants.constants[n].numbers = &wrong;
+        }
+    }
     REQUIRE(hysteron_core_stages_init(operators, &constants, memory[2], bytes, &stages) == HYSTERON_STAGE);
     OK(hysteron_state_free(by_handle));
     for (n = 0; n < 3; n++) {

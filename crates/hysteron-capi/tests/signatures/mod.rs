@@ -165,11 +165,18 @@ const LIMITS: HysteronLimits = HysteronLimits {
     temperature_max: f64::INFINITY,
 };
 
+static LAG: f64 = 0.5;
+
 /// A model with a lag.
 pub fn constants() -> HysteronStages {
     // SAFETY: all fields are numbers, or pointers that may be null.
     let mut constants: HysteronStages = unsafe { std::mem::zeroed() };
-    (constants.sign, constants.lag) = (1, 0.5);
+    constants.sign = 1;
+    constants.constants[0] = HysteronConstant {
+        name: c"lag".as_ptr(),
+        numbers: &LAG,
+        count: 1,
+    };
     constants
 }
 

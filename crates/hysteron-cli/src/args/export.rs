@@ -54,7 +54,7 @@ pub(crate) struct ExportC {
     /// Also write the code with which the weights adapt on the target
     #[arg(long)]
     pub(crate) adaptation: bool,
-    /// The sample time on the target, for a model with a thermal body, creep or a lag
+    /// The sample time on the target, for a model that depends on time
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) dt: Option<f64>,
     /// Lowest and highest drive of the inverse, for a model with stages [default: for a thermal

@@ -88,6 +88,10 @@ pub(crate) struct FitHow {
     /// Lag of the output: `auto` (as for --creep), `off`, or its time constant in s. Needs --time
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
+    /// Output curve behind the operators: `auto` (where it predicts parts of the recordings left
+    /// out), `off`, or the number of pieces, up to 100
+    #[arg(long, value_name = "N", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) curve: Step,
     /// Identify a thermal body in front of the operators, for an input that heats while the
     /// temperature is not known. The input has to be proportional to the power, as a duty cycle is:
     /// give the square of a current or a voltage. Needs --time
@@ -101,7 +105,7 @@ pub(crate) struct FitHow {
     /// say what a short recording does not. Plane, levels, spacing, operator and sign are theirs
     #[arg(long, value_name = "MODELS", conflicts_with_all = [
         "levels", "range", "smooth", "ridge", "spacing", "operator", "sign", "offset", "thermal",
-        "load", "creep", "lag", "bootstrap",
+        "load", "creep", "lag", "curve", "bootstrap",
     ])]
     pub(crate) prior: Option<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:

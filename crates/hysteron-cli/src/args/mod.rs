@@ -262,8 +262,8 @@ pub(crate) struct Simulate {
     /// with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
-    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
-    /// creep or a lag, and for --repair
+    /// Column of time, in seconds or with its unit in its name, for a model that depends on
+    /// time, and for --repair
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first row
@@ -302,8 +302,8 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
-    /// creep or a lag, and for --repair
+    /// Column of time, in seconds or with its unit in its name, for a model that depends on
+    /// time, and for --repair
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first row

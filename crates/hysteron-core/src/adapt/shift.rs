@@ -19,7 +19,7 @@ use crate::memory::Memory;
 use crate::model::{Model, Output};
 use crate::scalar::Real;
 use crate::solution::Solution;
-use crate::stages::{Load, Loaded, Rates, Sample, StageState, Stages, Wanted};
+use crate::stages::{Load, Loaded, Rates, Sample, StageState, Stages, Wanted, factors};
 use crate::state::State;
 
 /// A slope below the mean one divided by this is flat. It teaches nothing: the errors of a model
@@ -160,10 +160,15 @@ impl<T: Real> ShiftEstimator<T> {
             return Err(Error::InputNotFinite { index: 1 });
         }
         let rates = stages.rates_of(memory, sample.dt)?;
-        let gain = stages.gain_after(memory, &rates);
+        let before = *memory;
         let output = self.move_to(stages, model, state, memory, &rates, sample)?;
         let error = measured - output.output;
         let sensitivity = self.sensitivity(stages, model, state, memory, sample.load)?;
+        let sum = sensitivity.loaded.gain * model.output(state);
+        let factors = factors(&before, &rates);
+        let gain = stages
+            .behind
+            .slope(before.started, before.behind, &factors, sum);
         let gain = if stages.falling { -gain } else { gain };
         let slope = sensitivity.slope(gain, error);
         let here = sensitivity.loaded.scale * memory.temperature();

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::plane::Plane;
 use crate::scalar::Real;
-use crate::stages::limits::{is_factor, is_size, is_slope};
+use crate::stages::constant::{Constant, Constants, Declared, Range, Unit};
 
 /// What a load `σ` does: curves over the load, piecewise linear between the loads `loads`.
 ///
@@ -121,32 +121,6 @@ impl<T: Real> Load<'_, T> {
             _ => shift,
         }
     }
-
-    fn check(&self) -> Result<(), Error> {
-        let fault = |stage| Err(Error::Stage { stage });
-        let sizes = |values: &[T]| values.iter().all(|v| is_size(*v));
-        // Curves are divided by these distances.
-        let ascending = |values: &[T]| values.windows(2).all(|pair| is_slope(pair[1] - pair[0]));
-        if !(sizes(self.loads) && ascending(self.loads)) {
-            return fault("loads");
-        }
-        let fits =
-            |values: &[T]| (values.is_empty() || values.len() == self.loads.len()) && sizes(values);
-        let factors = |values: &[T]| values.iter().all(|v| is_factor(*v));
-        if !fits(self.shifts) {
-            return fault("shifts");
-        }
-        if !(fits(self.scales) && factors(self.scales)) {
-            return fault("scales");
-        }
-        if !(fits(self.gains) && factors(self.gains)) {
-            return fault("gains");
-        }
-        if !fits(self.offsets) {
-            return fault("offsets");
-        }
-        Ok(())
-    }
 }
 
 /// From the temperature `T` (or voltage, or current) to the input `x` of the operators:
@@ -234,32 +208,124 @@ impl<T: Real> Axis<'_, T> {
         T::from_index(8) * T::EPSILON * (effective * slope + ends)
     }
 
-    /// Checks lengths, order and size.
-    pub(crate) fn check(&self, plane: &Plane<T>) -> Result<(), Error> {
-        self.load.check()?;
+    /// Whether the spacing fits the plane.
+    pub(crate) fn fits_plane(&self, plane: &Plane<T>) -> Result<(), &'static str> {
         // Corners that are several rounding units apart do not coincide; those that both are about
         // zero have a slope of their own.
         let apart = |pair: &[T]| {
             let size = pair[0].max(-pair[0]).max(pair[1].max(-pair[1]));
             pair[1] - pair[0] > size * T::EPSILON * T::from_index(4)
-                && is_slope(plane.step() / (pair[1] - pair[0]))
+                && Range::Slope.has(plane.step() / (pair[1] - pair[0]))
         };
-        let placed = self.spacing.len() == plane.levels() + 1
-            && self.spacing.iter().all(|corner| is_size(*corner))
-            && self.spacing.windows(2).all(apart);
+        let placed = self.spacing.len() == plane.levels() + 1 && self.spacing.windows(2).all(apart);
         if !(self.spacing.is_empty() || placed) {
-            return Err(Error::Stage { stage: "spacing" });
+            return Err("spacing");
         }
-        match is_size(plane.bottom()) && is_size(plane.max()) && is_slope(plane.step()) {
+        let sizes = [plane.bottom(), plane.max()].map(|end| Range::Size.has(end));
+        match sizes == [true; 2] && Range::Slope.has(plane.step()) {
             true => Ok(()),
-            false => Err(Error::Stage { stage: "plane" }),
+            false => Err("plane"),
+        }
+    }
+}
+
+impl<'a, T: Real> Constants<'a, T> for Axis<'a, T> {
+    const DECLARED: &'static [Declared] = &[
+        Declared {
+            name: "load",
+            about: "shifts and scales the axis of the operators; changes stroke and offset",
+            constants: &[
+                Constant {
+                    name: "loads",
+                    unit: Unit::Load,
+                    range: Range::Size,
+                    meaning: "the loads at which the curves are known, ascending",
+                },
+                Constant {
+                    name: "shifts",
+                    unit: Unit::Temperature,
+                    range: Range::Size,
+                    meaning: "the shift of the axis at each load, or none at all",
+                },
+                Constant {
+                    name: "scales",
+                    unit: Unit::One,
+                    range: Range::Factor,
+                    meaning: "the scale of the axis at each load, or none at all",
+                },
+                Constant {
+                    name: "gains",
+                    unit: Unit::One,
+                    range: Range::Factor,
+                    meaning: "the factor of the sum at each load, or none at all",
+                },
+                Constant {
+                    name: "offsets",
+                    unit: Unit::Output,
+                    range: Range::Size,
+                    meaning: "what is added to the output at each load, or none at all",
+                },
+            ],
+        },
+        Declared {
+            name: "spacing",
+            about: "places the levels where the output moves",
+            constants: &[Constant {
+                name: "spacing",
+                unit: Unit::Temperature,
+                range: Range::Size,
+                meaning: "the K + 1 corners of the grid, ascending",
+            }],
+        },
+    ];
+
+    fn lists(&self) -> impl Iterator<Item = &[T]> {
+        let Load {
+            loads,
+            shifts,
+            scales,
+            gains,
+            offsets,
+        } = self.load;
+        [loads, shifts, scales, gains, offsets, self.spacing].into_iter()
+    }
+
+    fn of_lists(mut next: impl FnMut() -> &'a [T]) -> Option<Self> {
+        let load = Load {
+            loads: next(),
+            shifts: next(),
+            scales: next(),
+            gains: next(),
+            offsets: next(),
+        };
+        let spacing = next();
+        Some(Self { load, spacing })
+    }
+
+    fn fits(&self) -> Result<(), &'static str> {
+        let load = self.load;
+        // Curves are divided by these distances.
+        let ascends = |pair: &[T]| Range::Slope.has(pair[1] - pair[0]);
+        if !load.loads.windows(2).all(ascends) {
+            return Err("loads");
+        }
+        let curves = [
+            ("shifts", load.shifts),
+            ("scales", load.scales),
+            ("gains", load.gains),
+            ("offsets", load.offsets),
+        ];
+        let fits = |curve: &[T]| curve.is_empty() || curve.len() == load.loads.len();
+        match curves.into_iter().find(|(_, curve)| !fits(curve)) {
+            None => Ok(()),
+            Some((name, _)) => Err(name),
         }
     }
 }
 
 /// The piecewise linear function with the values `y(k)` at `xs[k]`. Beyond the ends it goes on
 /// with the slope of the outermost piece. At a knot it is exact.
-fn between<T: Real>(xs: &[T], y: impl Fn(usize) -> T, x: T) -> T {
+pub(crate) fn between<T: Real>(xs: &[T], y: impl Fn(usize) -> T, x: T) -> T {
     let last = xs.len() - 1;
     if last == 0 {
         return y(0);

@@ -1,6 +1,7 @@
 //! The thermal body: from a drive to a temperature.
 
 use crate::scalar::Real;
+use crate::stages::constant::{Constant, Constants, Declared, Range, Unit, one};
 
 /// A lumped thermal body: `T' = (T∞ − T)/τ` with `T∞ = T_ambient + gain · drive`. It has one time
 /// constant for heating (`T∞ > T`) and one for cooling.
@@ -81,5 +82,76 @@ impl<T: Real> Body<T> {
             false => decay.cooling,
         };
         self.hold(temperature + (wanted - temperature) / (T::ONE - factor))
+    }
+}
+
+/// A body that may be missing.
+impl<'a, T: Real> Constants<'a, T> for Option<Body<T>> {
+    const DECLARED: &'static [Declared] = &[Declared {
+        name: "body",
+        about: "first-order heating and cooling, from a drive to the temperature",
+        constants: &[
+            Constant {
+                name: "ambient",
+                unit: Unit::Temperature,
+                range: Range::Size,
+                meaning: "the temperature at rest without a drive",
+            },
+            Constant {
+                name: "gain",
+                unit: Unit::TemperaturePerDrive,
+                range: Range::Slope,
+                meaning: "the temperature at rest per unit of the drive",
+            },
+            Constant {
+                name: "tau_heating",
+                unit: Unit::Second,
+                range: Range::Time,
+                meaning: "the time constant of heating",
+            },
+            Constant {
+                name: "tau_cooling",
+                unit: Unit::Second,
+                range: Range::Time,
+                meaning: "the time constant of cooling",
+            },
+        ],
+    }];
+
+    fn lists(&self) -> impl Iterator<Item = &[T]> {
+        let list = |constant: fn(&Body<T>) -> &T| match self {
+            Some(body) => core::slice::from_ref(constant(body)),
+            None => &[],
+        };
+        [
+            list(|body| &body.ambient),
+            list(|body| &body.gain),
+            list(|body| &body.tau_heating),
+            list(|body| &body.tau_cooling),
+        ]
+        .into_iter()
+    }
+
+    fn of_lists(mut next: impl FnMut() -> &'a [T]) -> Option<Self> {
+        let constants = [one(next())?, one(next())?, one(next())?, one(next())?];
+        match constants {
+            [None, None, None, None] => Some(None),
+            [
+                Some(ambient),
+                Some(gain),
+                Some(tau_heating),
+                Some(tau_cooling),
+            ] => Some(Some(Body {
+                ambient,
+                gain,
+                tau_heating,
+                tau_cooling,
+            })),
+            _ => None,
+        }
+    }
+
+    fn fits(&self) -> Result<(), &'static str> {
+        Ok(())
     }
 }

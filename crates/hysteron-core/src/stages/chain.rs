@@ -6,16 +6,16 @@ use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::{Model, Output};
 use crate::scalar::Real;
-use crate::stages::after::{Creep, Fade, MAX_CREEP, Past};
 use crate::stages::axis::{Axis, Loaded};
+use crate::stages::behind::{self, Behind};
 use crate::stages::body::{Body, Decay};
-use crate::stages::limits::{is_share, is_size, is_slope, is_time};
+use crate::stages::constant::{Constant, Constants, Declared, Range};
 use crate::state::State;
 
 /// The constants of all stages around the operators of a [`Model`]. Each stage can be left out.
 ///
 /// ```text
-/// T = body(drive)    x = W(a(σ) T − s(σ))    h = operators(x)    y = offset + o(σ) + sign · lag(creep(g(σ) h))
+/// T = body(drive)    x = W(a(σ) T − s(σ))    h = operators(x)    y = offset + o(σ) + sign · behind(g(σ) h)
 /// ```
 ///
 /// ```
@@ -38,10 +38,8 @@ pub struct Stages<'a, T> {
     pub body: Option<Body<T>>,
     /// Load and spacing.
     pub axis: Axis<'a, T>,
-    /// Creep after the operators.
-    pub creep: Creep<'a, T>,
-    /// Time constant of a lag of the whole, in seconds; 0 for none.
-    pub lag: T,
+    /// The stages behind the operators.
+    pub behind: Behind<'a, T>,
     /// The output where the operators' sum is zero.
     pub offset: T,
     /// Whether the output falls while the operators' sum rises.
@@ -51,11 +49,17 @@ pub struct Stages<'a, T> {
 /// What the stages remember from one sample to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StageState<T> {
-    /// `false` before the first sample. At that sample body, creep and lag are at rest.
+    /// `false` before the first sample. At that sample the stages are at rest.
     pub(crate) started: bool,
     pub(crate) temperature: T,
-    pub(crate) past: Past<T>,
+    pub(crate) behind: behind::Memory<T>,
 }
+
+/// How many numbers a [`StageState`] has.
+pub const STATE_NUMBERS: usize = 2 + behind::MEMORY;
+
+/// How many factors [`Rates`] has.
+pub const RATE_NUMBERS: usize = 2 + behind::FACTORS;
 
 impl<T: Real> StageState<T> {
     /// The temperature after the last sample; 0 before the first one.
@@ -70,15 +74,16 @@ impl<T: Real> StageState<T> {
         self.started
     }
 
-    /// The state as numbers, for saving: 0 or 1 for whether there was a sample, the temperature,
-    /// the output of each creep term, the lagged sum.
+    /// The state as numbers, for saving: 0 or 1 for whether there was a sample, the temperature, and
+    /// what each stage behind the operators remembers; zeros for stages that are not there.
     #[must_use]
-    pub fn to_numbers(&self) -> [T; MAX_CREEP + 3] {
-        let mut numbers = [T::ZERO; MAX_CREEP + 3];
+    pub fn to_numbers(&self) -> [T; STATE_NUMBERS] {
+        let mut numbers = [T::ZERO; STATE_NUMBERS];
         numbers[0] = if self.started { T::ONE } else { T::ZERO };
         numbers[1] = self.temperature;
-        numbers[2..2 + MAX_CREEP].copy_from_slice(&self.past.crept);
-        numbers[2 + MAX_CREEP] = self.past.lagged;
+        for (number, place) in self.behind.numbers().zip(&mut numbers[2..]) {
+            *place = *number;
+        }
         numbers
     }
 
@@ -86,17 +91,18 @@ impl<T: Real> StageState<T> {
     ///
     /// # Errors
     /// [`Error::InputNotFinite`] with the index of a number that is not finite.
-    pub fn from_numbers(numbers: &[T; MAX_CREEP + 3]) -> Result<Self, Error> {
+    pub fn from_numbers(numbers: &[T; STATE_NUMBERS]) -> Result<Self, Error> {
         if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
             return Err(Error::InputNotFinite { index });
         }
-        let mut past = Past::default();
-        past.crept.copy_from_slice(&numbers[2..2 + MAX_CREEP]);
-        past.lagged = numbers[2 + MAX_CREEP];
+        let mut behind = behind::Memory::default();
+        for (place, number) in behind.numbers_mut().zip(&numbers[2..]) {
+            *place = *number;
+        }
         Ok(Self {
             started: numbers[0] != T::ZERO,
             temperature: numbers[1],
-            past,
+            behind,
         })
     }
 }
@@ -106,7 +112,7 @@ impl<T: Real> StageState<T> {
 pub struct Sample<T> {
     /// The input; with a thermal body, the drive that was held since the sample before.
     pub input: T,
-    /// Time since the sample before, in seconds; needed by body, creep and lag.
+    /// Time since the sample before, in seconds; needed by stages that depend on it.
     pub dt: Option<T>,
     /// The load; needed by a model that depends on one.
     pub load: Option<T>,
@@ -127,20 +133,85 @@ impl<T> From<T> for Sample<T> {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates<T> {
     pub(crate) decay: Decay<T>,
-    pub(crate) fade: Fade<T>,
+    pub(crate) behind: behind::Factors<T>,
 }
 
 impl<T: Real> Rates<T> {
-    /// The factors as numbers, for programs that carry them as constants: heating, cooling, each
-    /// creep term, lag.
+    /// The factors as numbers, for programs that carry them as constants: heating, cooling, those of
+    /// each stage behind the operators.
     #[must_use]
-    pub fn to_numbers(&self) -> [T; MAX_CREEP + 3] {
-        let mut numbers = [T::ZERO; MAX_CREEP + 3];
+    pub fn to_numbers(&self) -> [T; RATE_NUMBERS] {
+        let mut numbers = [T::ZERO; RATE_NUMBERS];
         numbers[0] = self.decay.heating;
         numbers[1] = self.decay.cooling;
-        numbers[2..2 + MAX_CREEP].copy_from_slice(&self.fade.creep);
-        numbers[2 + MAX_CREEP] = self.fade.lag;
+        for (number, place) in self.behind.numbers().zip(&mut numbers[2..]) {
+            *place = *number;
+        }
         numbers
+    }
+}
+
+impl<'a, T: Real> Stages<'a, T> {
+    /// What each stage declares, in the order of the signal's path.
+    pub fn declared() -> impl Iterator<Item = &'static Declared> {
+        <Option<Body<T>> as Constants<T>>::DECLARED
+            .iter()
+            .chain(<Axis<'_, T> as Constants<T>>::DECLARED)
+            .chain(Behind::<T>::declared())
+    }
+
+    /// The constants of all stages, each with its numbers: none, where it has no effect. Offset and
+    /// sign of the output are apart.
+    ///
+    /// ```
+    /// use hysteron_core::{Behind, Lag, Stages};
+    /// let behind = Behind { lag: Lag { tau: 0.5 }, ..Behind::NONE };
+    /// let stages = Stages { behind, ..Stages::NONE };
+    /// let lag = stages.constants().find(|(constant, _)| constant.name == "lag");
+    /// assert_eq!(lag.map(|(_, numbers)| numbers), Some(&[0.5][..]));
+    /// ```
+    pub fn constants(&self) -> impl Iterator<Item = (&'static Constant, &[T])> {
+        let lists = self.body.lists().chain(self.axis.lists());
+        let constants = Self::declared().flat_map(|stage| stage.constants);
+        constants.zip(lists.chain(self.behind.lists()))
+    }
+
+    /// The stages with these constants; `numbers` lends those of each. Offset and sign are those of
+    /// [`Stages::NONE`].
+    ///
+    /// # Errors
+    /// As [`Stages::of_lists`].
+    ///
+    /// ```
+    /// use hysteron_core::Stages;
+    /// let stages = Stages::with_constants(|constant| match constant.name {
+    ///     "lag" => &[0.5],
+    ///     _ => &[],
+    /// })?;
+    /// assert_eq!(stages.behind.lag.tau, 0.5);
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    pub fn with_constants(
+        mut numbers: impl FnMut(&'static Constant) -> &'a [T],
+    ) -> Result<Self, Error> {
+        let mut constants = Self::declared().flat_map(|stage| stage.constants);
+        Self::of_lists(|| constants.next().map_or(&[] as &[T], &mut numbers))
+    }
+
+    /// The stages with these constants. `next` lends the numbers of one after the other, in the
+    /// order of [`Stages::declared`].
+    ///
+    /// # Errors
+    /// [`Error::Stage`] with the name of a stage of which a constant has too many numbers, or is
+    /// missing. Values are checked by [`Stages::check`].
+    pub fn of_lists(mut next: impl FnMut() -> &'a [T]) -> Result<Self, Error> {
+        let fault = |stage| Error::Stage { stage };
+        Ok(Self {
+            body: Option::of_lists(&mut next).ok_or(fault("body"))?,
+            axis: Axis::of_lists(&mut next).ok_or(fault("load"))?,
+            behind: Behind::of_lists(&mut next).map_err(fault)?,
+            ..Self::NONE
+        })
     }
 }
 
@@ -149,43 +220,34 @@ impl<T: Real> Stages<'_, T> {
     pub const NONE: Self = Stages {
         body: None,
         axis: Axis::PLAIN,
-        creep: Creep::NONE,
-        lag: T::ZERO,
+        behind: Behind::NONE,
         offset: T::ZERO,
         falling: false,
     };
 
-    /// Checks the constants of all stages, for the operators of `model`: that they fit each other,
-    /// and that they are of a size with which no step overflows. Time constants are from 10⁻⁹ s to
-    /// 10⁹ s, coefficients of the creep at most 10⁶, gains and scales from 10⁻⁶ to 10⁶; all other
-    /// numbers, the output too, at most [`Real::LARGEST`].
+    /// Checks the constants of all stages, for the operators of `model`: that each is in its
+    /// [`Range`], that they fit each other, and that no output is larger than [`Real::LARGEST`]. No
+    /// step overflows then.
     ///
     /// # Errors
     /// [`Error::Stage`] with the name of the constant.
     pub fn check<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> Result<(), Error> {
         let fault = |stage| Err(Error::Stage { stage });
-        if let Some(body) = self.body {
-            let constants = [
-                ("ambient", is_size(body.ambient)),
-                ("gain", is_slope(body.gain)),
-                ("tau_heating", is_time(body.tau_heating)),
-                ("tau_cooling", is_time(body.tau_cooling)),
-            ];
-            if let Some((name, _)) = constants.into_iter().find(|(_, fits)| !fits) {
-                return fault(name);
-            }
+        let within = |range: Range, numbers: &[T]| numbers.iter().all(|number| range.has(*number));
+        let mut constants = self.constants();
+        if let Some((constant, _)) =
+            constants.find(|(constant, numbers)| !within(constant.range, numbers))
+        {
+            return fault(constant.name);
         }
-        self.axis.check(model.plane())?;
-        let Creep { coefficients, taus } = self.creep;
-        let fits = coefficients.len() <= MAX_CREEP && taus.len() == coefficients.len();
-        let shares = coefficients.iter().all(|c| is_share(*c));
-        if !(fits && shares && taus.iter().all(|tau| is_time(*tau))) {
-            return fault("creep");
+        let fits = self
+            .axis
+            .fits()
+            .and_then(|()| self.axis.fits_plane(model.plane()));
+        if let Err(stage) = fits.and_then(|()| self.behind.fits()) {
+            return fault(stage);
         }
-        if !(self.lag == T::ZERO || is_time(self.lag)) {
-            return fault("lag");
-        }
-        if !is_size(self.offset) {
+        if !Range::Size.has(self.offset) {
             return fault("offset");
         }
         // Two entries of the table make an output of KP and of relays.
@@ -193,57 +255,56 @@ impl<T: Real> Stages<'_, T> {
         let most = entries
             .iter()
             .fold(T::ZERO, |most, e| most.max(*e).max(-*e));
-        match is_size(self.gain_most() * self.creep.gain() * (most + most)) {
+        let sum = self.gain_most() * (most + most);
+        let outputs = [sum, -sum].map(|sum| self.behind.settled(sum));
+        match outputs.into_iter().all(|output| Range::Size.has(output)) {
             true => Ok(()),
             false => fault("weights"),
         }
     }
 
-    /// The output after creep and lag from that of the operators, `h`, in its unit and with its sign.
+    /// The output behind all stages from that of the operators, `h`, in its unit and with its sign.
     /// `past` is what the call before returned; `None` at the first sample.
     #[must_use]
     pub fn after(&self, past: Option<StageState<T>>, dt: T, h: T) -> (T, StageState<T>) {
-        let sum = self.inward(h);
-        let memory = past.unwrap_or_default();
-        let fade = self.fade(&memory, &self.rates(dt));
-        let (sum, past) = self.creep.forward(self.past(&memory, sum), fade, sum);
-        let next = StageState {
-            started: true,
-            past,
-            ..memory
-        };
+        let (factors, mut next) = self.alone(past, dt);
+        let sum = self
+            .behind
+            .forward(next.started, &mut next.behind, &factors, self.inward(h));
+        next.started = true;
         (self.outward(sum), next)
     }
 
-    /// The output of the operators, in its unit and with its sign, from the output `y` after creep
-    /// and lag. `past` is what the call before returned: the outputs of the lags. `None` at the
+    /// The output of the operators, in its unit and with its sign, from the output `y` behind all
+    /// stages. `past` is what the call before returned: what the stages remember. `None` at the
     /// first sample, where they are at rest.
     ///
     /// The result is not finite for a lag in a step without length.
     #[must_use]
     pub fn undo_after(&self, past: Option<StageState<T>>, dt: T, y: T) -> (T, StageState<T>) {
-        let sum = self.inward(y);
-        let memory = past.unwrap_or_default();
-        let rates = self.rates(dt);
-        let (base, gain) = match memory.started {
-            true => self.creep.line(memory.past, rates.fade),
-            false => (T::ZERO, self.creep.gain()),
-        };
-        let h = (sum - base) / gain;
-        let fade = self.fade(&memory, &rates);
-        let (_, past) = self.creep.forward(self.past(&memory, h), fade, h);
-        let next = StageState {
-            started: true,
-            past,
-            ..memory
-        };
+        let (factors, mut next) = self.alone(past, dt);
+        let h = self.behind.inverse(&next.behind, &factors, self.inward(y));
+        self.behind
+            .forward(next.started, &mut next.behind, &factors, h);
+        next.started = true;
         (self.outward(h), next)
     }
 
-    /// The range of the operators' sum, at the load where it is widest.
+    /// What the stages behind the operators need for a sample without the others.
+    fn alone(&self, past: Option<StageState<T>>, dt: T) -> (behind::Factors<T>, StageState<T>) {
+        let memory = past.unwrap_or_default();
+        let factors = match memory.started {
+            true => self.behind.factors(dt),
+            false => behind::Factors::default(),
+        };
+        (factors, memory)
+    }
+
+    /// The range of the outputs at rest, at the load where it is widest.
     pub(crate) fn range<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> T {
         let (off, on) = model.output_range();
-        (on - off).max(off - on) * self.gain_most()
+        let ends = [off, on].map(|sum| self.behind.settled(self.gain_most() * sum));
+        (ends[1] - ends[0]).max(ends[0] - ends[1])
     }
 
     /// The largest gain of the load; 1 without one.
@@ -253,25 +314,26 @@ impl<T: Real> Stages<'_, T> {
         if gain > T::ZERO { gain } else { T::ONE }
     }
 
+    /// Whether no stage is there.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.body.is_none()
+            && self.axis == Axis::PLAIN
+            && !self.behind.there().any(|(_, there)| there)
+    }
+
     /// Whether a stage depends on time, so that each sample needs its `dt`.
     #[must_use]
     pub fn is_timed(&self) -> bool {
-        self.body.is_some() || !self.creep.coefficients.is_empty() || self.lag > T::ZERO
+        self.body.is_some() || self.behind.is_timed()
     }
 
     /// The factors for a time step of `dt` seconds, 0 or more.
     #[must_use]
     pub fn rates(&self, dt: T) -> Rates<T> {
-        let mut fade = Fade::default();
-        for (factor, &tau) in fade.creep.iter_mut().zip(self.creep.taus) {
-            *factor = (-dt / tau).exp();
-        }
-        if self.lag > T::ZERO {
-            fade.lag = (-dt / self.lag).exp();
-        }
         Rates {
             decay: self.body.map(|body| body.decay(dt)).unwrap_or_default(),
-            fade,
+            behind: self.behind.factors(dt),
         }
     }
 
@@ -351,13 +413,11 @@ impl<T: Real> Stages<'_, T> {
         let seen = self.axis.forward(model.plane(), loaded, temperature);
         let step = model.step(state, seen)?;
         let h = loaded.gain * step.output;
-        let fade = self.fade(memory, rates);
-        let (sum, past) = self.creep.forward(self.past(memory, h), fade, h);
-        *memory = StageState {
-            started: true,
-            temperature,
-            past,
-        };
+        let factors = factors(memory, rates);
+        let sum = self
+            .behind
+            .forward(memory.started, &mut memory.behind, &factors, h);
+        (memory.started, memory.temperature) = (true, temperature);
         Ok(Output {
             output: loaded.offset + self.outward(sum),
             clipped: step.clipped,
@@ -370,14 +430,6 @@ impl<T: Real> Stages<'_, T> {
             None => input,
             Some(body) if memory.started => body.step(memory.temperature, input, rates.decay),
             Some(body) => body.rest(input),
-        }
-    }
-
-    /// The gain from the operators' sum `g h` to the output in the next sample, without its sign.
-    pub(crate) fn gain_after(&self, memory: &StageState<T>, rates: &Rates<T>) -> T {
-        match memory.started {
-            true => self.creep.line(memory.past, rates.fade).1,
-            false => self.creep.gain(),
         }
     }
 
@@ -407,25 +459,6 @@ impl<T: Real> Stages<'_, T> {
         }
     }
 
-    /// The past of creep and lag; before the first sample, that of a rest at `h`.
-    pub(crate) fn past(&self, memory: &StageState<T>, h: T) -> Past<T> {
-        match memory.started {
-            true => memory.past,
-            false => Past {
-                crept: [h; MAX_CREEP],
-                lagged: h,
-            },
-        }
-    }
-
-    /// The factors of creep and lag. Before the first sample nothing of a past is left.
-    pub(crate) fn fade(&self, memory: &StageState<T>, rates: &Rates<T>) -> Fade<T> {
-        match memory.started {
-            true => rates.fade,
-            false => Fade::default(),
-        }
-    }
-
     pub(crate) fn outward(&self, sum: T) -> T {
         match self.falling {
             true => self.offset - sum,
@@ -438,5 +471,14 @@ impl<T: Real> Stages<'_, T> {
             true => self.offset - output,
             false => output - self.offset,
         }
+    }
+}
+
+/// The factors of the stages behind the operators. Before the first sample nothing of a past is
+/// left.
+pub(crate) fn factors<T: Real>(memory: &StageState<T>, rates: &Rates<T>) -> behind::Factors<T> {
+    match memory.started {
+        true => rates.behind,
+        false => behind::Factors::default(),
     }
 }

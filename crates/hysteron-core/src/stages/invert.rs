@@ -8,8 +8,8 @@ use crate::operator::Operator;
 use crate::scalar::Real;
 use crate::solution::{Solution, Status};
 use crate::stages::axis::Loaded;
-use crate::stages::chain::{Rates, StageState, Stages};
-use crate::stages::limits::thousandth;
+use crate::stages::chain::{Rates, StageState, Stages, factors};
+use crate::stages::constant::thousandth;
 use crate::state::State;
 use crate::target::{Direction, Target};
 
@@ -19,7 +19,7 @@ use crate::target::{Direction, Target};
 pub struct Wanted<T> {
     /// The output, its heading and its tolerance, in the output's unit.
     pub target: Target<T>,
-    /// Time since the sample before, in seconds; needed by body, creep and lag.
+    /// Time since the sample before, in seconds; needed by stages that depend on it.
     pub dt: Option<T>,
     /// The load; needed by a model that depends on one.
     pub load: Option<T>,
@@ -49,7 +49,7 @@ impl<T: Real> From<Target<T>> for Wanted<T> {
 }
 
 impl<T: Real> Stages<'_, T> {
-    /// Finds the drive for `wanted` and moves there: the operators, the body, creep and lag go
+    /// Finds the drive for `wanted` and moves there: the operators and all stages go
     /// where the drive takes them, also where it does not give the target.
     ///
     /// Each stage is inverted for the present sample, from the last to the first. The status is
@@ -178,16 +178,19 @@ impl<T: Real> Stages<'_, T> {
         let reached = self
             .step_loaded(model, state, memory, rates, input, loaded)?
             .output;
-        let gain = loaded.gain * self.creep.gain();
+        let gain = loaded.gain * self.behind.steepest_at_rest();
         let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));
         let error = (reached - target.output).max(target.output - reached);
         let magnitude = |v: T| v.max(-v);
         let offsets = magnitude(self.offset) + magnitude(loaded.offset) + magnitude(target.output);
+        let offsets = offsets + self.behind.size();
         let spread = T::from_index(8) * T::EPSILON * offsets;
         let (off, on) = model.output_range();
-        let allowed = (rounding + spread).min(thousandth(gain * (on - off)));
+        let ends = [off, on].map(|sum| self.behind.settled(loaded.gain * sum));
+        let allowed = (rounding + spread).min(thousandth(ends[1] - ends[0]));
         let met = error <= target.tolerance.max(T::ZERO) + allowed;
-        let static_reach = self.reach(inverse, loaded, target);
+        let reach = target.tolerance.max(gain * inverse.rounding());
+        let static_reach = self.reach(ends, reach, target.output - loaded.offset);
         let status = match solution.status {
             _ if met => Status::Ok,
             _ if static_reach != Status::Ok => static_reach,
@@ -210,14 +213,18 @@ impl<T: Real> Stages<'_, T> {
             (true, Some(Direction::Falling)) => Some(Direction::Rising),
             (_, heading) => heading,
         };
-        let (base, gain) = match memory.started {
-            true => self.creep.line(memory.past, rates.fade),
-            false => (T::ZERO, self.creep.gain()),
+        let factors = factors(memory, rates);
+        let sum = self.inward(target.output - loaded.offset);
+        let h = self.behind.inverse(&memory.behind, &factors, sum);
+        // Within so much of the sum, the output stays within its tolerance wherever it is.
+        let tolerance = match target.tolerance == T::ZERO {
+            true => T::ZERO,
+            false => target.tolerance / (self.behind.steepest(&factors) * loaded.gain),
         };
         Target {
-            output: (self.inward(target.output - loaded.offset) - base) / (gain * loaded.gain),
+            output: h / loaded.gain,
             heading,
-            tolerance: target.tolerance / (gain * loaded.gain),
+            tolerance,
         }
     }
 
@@ -262,20 +269,13 @@ impl<T: Real> Stages<'_, T> {
         }
     }
 
-    /// Whether the target lies beyond the outputs at rest.
-    fn reach<C: AsRef<[T]>>(
-        &self,
-        inverse: &Inverse<'_, T, C>,
-        loaded: Loaded<T>,
-        target: Target<T>,
-    ) -> Status {
-        let gain = loaded.gain * self.creep.gain();
-        let (off, on) = inverse.model.output_range();
-        let reach = target.tolerance.max(gain * inverse.rounding());
-        let sum = self.inward(target.output - loaded.offset);
-        let status = if sum > gain * on + reach {
+    /// Whether an output, without the offset of the load, lies by more than `reach` beyond the ends
+    /// of those at rest.
+    fn reach(&self, [low, high]: [T; 2], reach: T, output: T) -> Status {
+        let sum = self.inward(output);
+        let status = if sum > high + reach {
             Status::High
-        } else if sum < gain * off - reach {
+        } else if sum < low - reach {
             Status::Low
         } else {
             Status::Ok

@@ -6,7 +6,7 @@ use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::Model;
 use crate::scalar::Real;
-use crate::stages::limits::{is_size, is_slope};
+use crate::stages::constant::Range;
 use crate::stages::mix::mix;
 use crate::state::State;
 
@@ -87,8 +87,8 @@ impl<T: Real> Parts<'_, T> {
     pub fn check<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> Result<(), Error> {
         let (low, high) = self.range;
         let count = self.offsets.len();
-        let sizes = |numbers: &[T]| numbers.iter().all(|number| is_size(*number));
-        if !(is_size(low) && is_size(high) && is_slope(high - low)) {
+        let sizes = |numbers: &[T]| numbers.iter().all(|number| Range::Size.has(*number));
+        if !(Range::Size.has(low) && Range::Size.has(high) && Range::Slope.has(high - low)) {
             return Err(Error::Stage { stage: "load" });
         }
         let fits = (1..=MAX_PARTS).contains(&count)

@@ -1,6 +1,6 @@
 //! Random stages around the operators.
 
-use hysteron_core::{Axis, Body, Creep, Load, Plane, Real, Stages};
+use hysteron_core::{Plane, Real, Stages};
 use rand::RngExt;
 use rand::rngs::StdRng;
 
@@ -14,6 +14,8 @@ pub struct Constants {
     pub gains: Vec<f64>,
     pub offsets: Vec<f64>,
     pub spacing: Vec<f64>,
+    pub sums: Vec<f64>,
+    pub outputs: Vec<f64>,
     pub coefficients: Vec<f64>,
     pub taus: Vec<f64>,
     pub lag: f64,
@@ -45,6 +47,11 @@ impl Constants {
         } else {
             0
         };
+        let knots = if rng.random() {
+            rng.random_range(2..8)
+        } else {
+            0
+        };
         let mut numbers = |count: usize, low: f64, high: f64| -> Vec<f64> {
             (0..count).map(|_| rng.random_range(low..high)).collect()
         };
@@ -72,6 +79,8 @@ impl Constants {
                 true => ascending(rng, corners, plane.bottom(), span),
                 false => Vec::new(),
             },
+            sums: ascending(rng, knots, -2.0, 12.0),
+            outputs: ascending(rng, knots, -1.0, 8.0),
             coefficients,
             taus,
             lag: if rng.random() { lag } else { 0.0 },
@@ -80,29 +89,37 @@ impl Constants {
         }
     }
 
+    /// The numbers of the constant with this name.
+    fn list(&self, name: &str) -> &[f64] {
+        let of_body = |k: usize| self.body.as_ref().map_or(&[][..], |body| &body[k..=k]);
+        match name {
+            "ambient" => of_body(0),
+            "gain" => of_body(1),
+            "tau_heating" => of_body(2),
+            "tau_cooling" => of_body(3),
+            "loads" => &self.loads,
+            "shifts" => &self.shifts,
+            "scales" => &self.scales,
+            "gains" => &self.gains,
+            "offsets" => &self.offsets,
+            "spacing" => &self.spacing,
+            "curve_sums" => &self.sums,
+            "curve_outputs" => &self.outputs,
+            "creep" => &self.coefficients,
+            "creep_taus" => &self.taus,
+            "lag" => std::slice::from_ref(&self.lag),
+            other => panic!("no such constant: {other}"),
+        }
+    }
+
     pub fn map<T: Real>(&self, number: impl Fn(f64) -> T) -> Owned<T> {
-        let all = |values: &[f64]| values.iter().map(|v| number(*v)).collect();
+        let constants = Stages::<T>::declared().flat_map(|stage| stage.constants);
+        let lists = constants.map(|constant| {
+            let numbers = self.list(constant.name).iter().map(|v| number(*v));
+            (constant.name, numbers.collect())
+        });
         Owned {
-            body: self
-                .body
-                .map(|[ambient, gain, tau_heating, tau_cooling]| Body {
-                    ambient: number(ambient),
-                    gain: number(gain),
-                    tau_heating: number(tau_heating),
-                    tau_cooling: number(tau_cooling),
-                }),
-            lists: [
-                &self.loads,
-                &self.shifts,
-                &self.scales,
-                &self.gains,
-                &self.offsets,
-                &self.spacing,
-                &self.coefficients,
-                &self.taus,
-            ]
-            .map(|list| all(list)),
-            lag: number(self.lag),
+            lists: lists.collect(),
             offset: number(self.offset),
             falling: self.falling,
         }
@@ -110,41 +127,24 @@ impl Constants {
 }
 
 pub struct Owned<T> {
-    pub body: Option<Body<T>>,
-    pub lists: [Vec<T>; 8],
-    pub lag: T,
+    pub lists: Vec<(&'static str, Vec<T>)>,
     pub offset: T,
     pub falling: bool,
 }
 
 impl<T: Real> Owned<T> {
+    pub fn body(&self) -> Option<hysteron_core::Body<T>> {
+        self.stages().body
+    }
+
     pub fn stages(&self) -> Stages<'_, T> {
-        let [
-            loads,
-            shifts,
-            scales,
-            gains,
-            offsets,
-            spacing,
-            coefficients,
-            taus,
-        ] = &self.lists;
+        let list = |name| self.lists.iter().find(|list| list.0 == name);
+        let numbers = |name| list(name).map_or(&[][..], |list| &list.1);
+        let stages = Stages::with_constants(|constant| numbers(constant.name));
         Stages {
-            body: self.body,
-            axis: Axis {
-                load: Load {
-                    loads,
-                    shifts,
-                    scales,
-                    gains,
-                    offsets,
-                },
-                spacing,
-            },
-            creep: Creep { coefficients, taus },
-            lag: self.lag,
             offset: self.offset,
             falling: self.falling,
+            ..stages.unwrap()
         }
     }
 }

@@ -4,7 +4,7 @@ use super::rounding::missed;
 use super::stages::{CSampling, Staged};
 use super::{CMemory, CReal};
 use hysteron::{Error, Model, Operator, Remedy, Result, Setting, Sign};
-use hysteron_core::{MAX_CREEP, Plane, Real, table_len, turn_capacity};
+use hysteron_core::{Plane, RATE_NUMBERS, Real, STATE_NUMBERS, table_len, turn_capacity};
 
 /// A number type of C.
 pub(super) trait Number: Real {
@@ -168,13 +168,17 @@ impl<T: Number> Constants<T> {
         let (stages, state) = match &self.stages {
             None => (0, operators),
             Some(staged) => (
-                aligned(aligned(12 * WORD) + (11 + 2 * MAX_CREEP) * T::BYTES + 3)
-                    + staged
-                        .parts
-                        .as_ref()
-                        .map_or(0, |_| aligned(3 * WORD) + 2 * T::BYTES)
+                {
+                    let lists = 1 + staged.arrays().count();
+                    let core = staged.core(self);
+                    let numbers = 9 + RATE_NUMBERS + core.behind.slopes().count();
+                    aligned(aligned((3 + 2 * lists) * WORD) + numbers * T::BYTES + 3)
+                } + staged
+                    .parts
+                    .as_ref()
+                    .map_or(0, |_| aligned(3 * WORD) + 2 * T::BYTES)
                     + staged.numbers() * T::BYTES,
-                operators + aligned(3 * WORD) + (2 + MAX_CREEP) * T::BYTES + mixed,
+                operators + aligned(3 * WORD) + (STATE_NUMBERS - 1) * T::BYTES + mixed,
             ),
         };
         let start = match (&self.start, &self.stages) {

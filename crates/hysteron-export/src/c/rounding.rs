@@ -4,7 +4,7 @@ use super::CReal;
 use super::constants::{Number, unfit};
 use super::stages::CSampling;
 use hysteron::{Error, Model, Operator, Result};
-use hysteron_core::{MAX_CREEP, Stages, operator_index};
+use hysteron_core::{Stages, operator_index};
 
 /// What rounding may amount to where a target counts as reached, as a part of the range of outputs.
 /// The status allows no more.
@@ -23,14 +23,16 @@ pub(super) fn missed<T: Number>(model: &Model, sampling: &CSampling) -> Result<f
         curve => curve.iter().fold(0.0, |most, v| f64::max(most, v.abs())),
     };
     let load = stages.axis.load;
-    let gain = most(load.gains, 1.0) * stages.creep.gain();
+    let of_load = most(load.gains, 1.0);
+    let gain = of_load * stages.behind.steepest_at_rest();
     let Slopes { total, steepest } = Slopes::of(model);
     let (low, high) = model.output_range();
     let offset = most(load.offsets, 0.0);
     let target = low.abs().max(high.abs()) + offset;
     let axis = Axis::of(model, &stages, sampling);
     let of_digits = 4.0 * epsilon * gain * total;
-    let of_offsets = 8.0 * epsilon * (model.offset().abs() + offset + target);
+    let of_stages = stages.behind.size();
+    let of_offsets = 8.0 * epsilon * (model.offset().abs() + offset + target + of_stages);
     let of_axis = 8.0 * epsilon * axis.size / model.plane().step();
     // What is left of the past is rounded in each sample, and that adds up.
     let rates = sampling.dt.map(|dt| stages.rates(dt).to_numbers());
@@ -40,13 +42,14 @@ pub(super) fn missed<T: Number>(model: &Model, sampling: &CSampling) -> Result<f
         Some(_) => drifted(heating.max(cooling)) * axis.heated / model.plane().step(),
         None => 0.0,
     };
-    let of_creep = stages.creep.coefficients.iter().zip(faded);
-    let of_creep: f64 = of_creep
-        .map(|(share, factor)| share * drifted(factor))
-        .sum();
-    let of_past = of_creep + drifted(faded[MAX_CREEP]);
+    let of_past = epsilon / 2.0 * (1.0 + stages.behind.drift(&faded));
     let needed = of_digits + of_offsets + gain * (steepest * (of_axis + of_body) + total * of_past);
-    let range = gain * total;
+    let bottom = match model.operator() {
+        Operator::Mkp => 0.0,
+        Operator::Kp | Operator::Relay => -0.5 * total,
+    };
+    let ends = [bottom, bottom + total].map(|sum| stages.behind.settled(of_load * sum));
+    let range = ends[1] - ends[0];
     // False for NaN.
     let kept = needed <= MOST * range;
     if !kept && range > 0.0 {

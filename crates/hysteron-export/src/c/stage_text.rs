@@ -5,7 +5,6 @@ use super::constants::{Constants, Number};
 use super::stages::Staged;
 use super::text::{list, quantity};
 use hysteron::Model;
-use hysteron_core::MAX_CREEP;
 use std::fmt::Write;
 
 /// What the header says of the stages.
@@ -14,7 +13,7 @@ pub(super) fn remarks<T: Number>(model: &Model, staged: &Staged<T>) -> Vec<Strin
     if let Some(dt) = staged.dt {
         lines.push(format!("sample time: {dt:?} s"));
     }
-    if let (Some(load), [low, .., high]) = (&model.load, staged.loads.as_slice()) {
+    if let (Some(load), [low, .., high]) = (&model.load, staged.constants.get("loads")) {
         lines.push(format!(
             "load: {}, from {low:?} to {high:?}",
             quantity(&load.quantity)
@@ -73,15 +72,7 @@ pub(super) fn actuator<T: Number>(
 ) -> String {
     let CExport { name, .. } = export;
     let start: &[T] = constants.start.as_ref().map_or(&[], |(points, _)| points);
-    let arrays = [
-        ("loads", staged.loads.as_slice()),
-        ("shifts", &staged.shifts),
-        ("scales", &staged.scales),
-        ("gains", &staged.gains),
-        ("offsets", &staged.offsets),
-        ("spacing", &staged.spacing),
-        ("start", start),
-    ];
+    let arrays: Vec<_> = staged.arrays().chain([("start", start)]).collect();
     let mut text = String::new();
     for (array, numbers) in arrays.iter().filter(|(_, numbers)| !numbers.is_empty()) {
         let _ = write!(
@@ -109,7 +100,7 @@ pub(super) fn actuator<T: Number>(
     );
     for (array, numbers) in &arrays {
         let value = if numbers.is_empty() { "NULL" } else { array };
-        let _ = writeln!(text, "    .{array} = {value},");
+        let _ = writeln!(text, "    .{array} = {{{value}, {}}},", numbers.len());
     }
     let parts = if staged.parts.is_some() {
         "&parts"
@@ -117,27 +108,22 @@ pub(super) fn actuator<T: Number>(
         "NULL"
     };
     let _ = writeln!(text, "    .parts = {parts},");
-    for (field, count) in [
-        ("load_count", staged.loads.len()),
-        ("start_count", start.len()),
-        ("creep_count", staged.creep.len()),
-    ] {
-        let _ = writeln!(text, "    .{field} = {count},");
-    }
+    let core = staged.core(constants);
+    let each = core.behind.there().enumerate();
+    let bits = each.map(|(n, (_, there))| u32::from(there) << n);
+    let _ = writeln!(text, "    .there = {},", bits.sum::<u32>());
     for (field, number) in fields(constants, staged) {
         let _ = writeln!(text, "    .{field} = {},", number.literal());
     }
-    for (field, numbers) in [
-        ("creep", padded(&staged.creep)),
-        ("fade", padded(&staged.rates[2..2 + MAX_CREEP])),
-    ] {
-        let numbers = numbers.map(Number::literal).join(", ");
-        let _ = writeln!(text, "    .{field} = {{{numbers}}},");
+    let slopes: Vec<T> = core.behind.slopes().collect();
+    for (field, numbers) in [("factors", &staged.rates[2..]), ("slopes", &slopes)] {
+        let numbers: Vec<String> = numbers.iter().map(|number| number.literal()).collect();
+        let _ = writeln!(text, "    .{field} = {{{}}},", numbers.join(", "));
     }
     let _ = write!(
         text,
         "    .body = {},\n    .falls = {},\n    .limited = {}\n}};\n",
-        usize::from(staged.body.is_some()),
+        usize::from(core.body.is_some()),
         usize::from(constants.falls),
         usize::from(staged.drive.is_some()),
     );
@@ -145,28 +131,20 @@ pub(super) fn actuator<T: Number>(
 }
 
 fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static str, T); 11] {
-    let body = |of: fn(hysteron_core::Body<T>) -> T| staged.body.map_or(T::ZERO, of);
+    let single = |name: &str| staged.constants.get(name).first().copied();
     let (low, high) = staged.drive.unwrap_or((T::ZERO, T::ZERO));
-    let start = constants
-        .start
-        .as_ref()
-        .map_or(T::ZERO, |(_, input)| *input);
+    let start = constants.start.as_ref().map(|(_, input)| *input);
     [
-        ("start_input", start),
+        ("start_input", start.unwrap_or(T::ZERO)),
         ("steepest", staged.steepest),
-        ("ambient", body(|body| body.ambient)),
-        ("gain", body(|body| body.gain)),
+        ("ambient", single("ambient").unwrap_or(T::ZERO)),
+        ("gain", single("gain").unwrap_or(T::ZERO)),
         ("heating", staged.rates[0]),
         ("cooling", staged.rates[1]),
-        ("creep_gain", staged.creep_gain),
-        ("lag", staged.rates[2 + MAX_CREEP]),
+        ("steepest_behind", staged.gain),
+        ("size_behind", staged.size),
         ("offset", constants.offset),
         ("drive_min", low),
         ("drive_max", high),
     ]
-}
-
-/// Four numbers, zero beyond those given.
-fn padded<T: Number>(numbers: &[T]) -> [T; MAX_CREEP] {
-    std::array::from_fn(|k| numbers.get(k).copied().unwrap_or(T::ZERO))
 }

@@ -1,8 +1,8 @@
 //! The stages of a model in the number type of the target, at a fixed sample time.
 
 use super::constants::{Constants, Number, unfit};
-use hysteron::{Error, Model, Remedy, Result, Setting};
-use hysteron_core::{Axis, Body, Creep, Load, MAX_CREEP, MAX_PARTS, Real, Stages, table_len};
+use hysteron::{Error, Model, Remedy, Result, Setting, StageConstants};
+use hysteron_core::{Constant, MAX_PARTS, RATE_NUMBERS, Range, Real, Stages, table_len};
 
 /// How a model with stages runs on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,19 +29,13 @@ pub(super) struct Parts<T> {
 /// The constants of `hys_actuator`.
 pub(super) struct Staged<T> {
     pub(super) dt: Option<f64>,
-    pub(super) body: Option<Body<T>>,
-    pub(super) loads: Vec<T>,
-    pub(super) shifts: Vec<T>,
-    pub(super) scales: Vec<T>,
-    pub(super) gains: Vec<T>,
-    pub(super) offsets: Vec<T>,
-    pub(super) spacing: Vec<T>,
-    pub(super) creep: Vec<T>,
-    taus: Vec<T>,
-    lag: T,
+    pub(super) constants: StageConstants<T>,
     /// Those of [`hysteron_core::Rates::to_numbers`].
-    pub(super) rates: [T; MAX_CREEP + 3],
-    pub(super) creep_gain: T,
+    pub(super) rates: [T; RATE_NUMBERS],
+    /// The gain at rest of the stages behind the operators.
+    pub(super) gain: T,
+    /// The size of the numbers that they add to the output's.
+    pub(super) size: T,
     /// Levels per corner, where they are closest, in units of the plane's axis.
     pub(super) steepest: T,
     /// The range of the drive, where there is one.
@@ -57,17 +51,11 @@ impl<T: Number> Staged<T> {
         constants: &Constants<T>,
         sampling: &CSampling,
     ) -> Result<Option<Self>> {
-        let stages = model.stages();
-        let load = stages.axis.load;
-        let parts = model
-            .load
-            .as_ref()
-            .is_some_and(|load| load.parts().len() > 1);
-        let bare = !parts
-            && stages.body.is_none()
-            && load.loads.is_empty()
-            && stages.axis.spacing.is_empty()
-            && !model.is_timed();
+        let bare = model.is_plain() || {
+            // One part of weights for a load, without curves.
+            let parts = model.load.as_ref().map_or(1, |load| load.parts().len());
+            parts == 1 && model.constants().is_none()
+        };
         check(model, sampling, bare)?;
         if bare {
             return Ok(None);
@@ -76,39 +64,21 @@ impl<T: Number> Staged<T> {
             let near = T::of(number).filter(|near| near.is_finite());
             near.ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
-        let all = |what: &str, numbers: &[f64]| {
-            let numbers = numbers.iter().map(|&n| number(what, n));
-            numbers.collect::<Result<Vec<T>>>()
-        };
-        let body = |body: Body<f64>| -> Result<Body<T>> {
-            Ok(Body {
-                ambient: number("an ambient temperature", body.ambient)?,
-                gain: number("a gain of the body", body.gain)?,
-                tau_heating: number("a time constant", body.tau_heating)?,
-                tau_cooling: number("a time constant", body.tau_cooling)?,
-            })
-        };
-        let drive = match (sampling.drive, stages.body) {
+        let drive = match (sampling.drive, model.thermal) {
             (None, None) => None,
             (drive, _) => {
                 let (low, high) = drive.unwrap_or_else(|| model.drive_range());
                 Some((number("a drive", low)?, number("a drive", high)?))
             }
         };
+        let all = model.constants();
+        let of_stage = |constant: &Constant, value| number(&format!("`{}`", constant.name), value);
         let mut staged = Self {
             dt: sampling.dt,
-            body: stages.body.map(body).transpose()?,
-            loads: all("a load", load.loads)?,
-            shifts: all("a shift", load.shifts)?,
-            scales: all("a scale", load.scales)?,
-            gains: all("a gain of the load", load.gains)?,
-            offsets: all("an offset of the load", load.offsets)?,
-            spacing: all("a level", stages.axis.spacing)?,
-            creep: all("a coefficient of the creep", stages.creep.coefficients)?,
-            taus: all("a time constant", stages.creep.taus)?,
-            lag: number("a lag", stages.lag)?,
-            rates: [T::ZERO; MAX_CREEP + 3],
-            creep_gain: T::ONE,
+            constants: all.map(of_stage)?,
+            rates: [T::ZERO; RATE_NUMBERS],
+            gain: T::ONE,
+            size: T::ZERO,
             steepest: T::ONE,
             drive,
             parts: Parts::of(model, constants)?,
@@ -116,67 +86,60 @@ impl<T: Number> Staged<T> {
         let core = staged.core(constants);
         core.check(&constants.core)
             .map_err(|error| unfit(&error.to_string()))?;
-        let creep_gain = core.creep.gain();
+        let (gain, size) = (core.behind.steepest_at_rest(), core.behind.size());
         let rates = match sampling.dt {
             Some(dt) => core.rates(number("a sample time", dt)?).to_numbers(),
             None => staged.rates,
         };
         let step = constants.core.plane().step();
-        let slopes = staged
-            .spacing
-            .windows(2)
-            .map(|pair| step / (pair[1] - pair[0]));
-        let steepest = slopes.fold(T::ZERO, Real::max);
-        (staged.creep_gain, staged.rates) = (creep_gain, rates);
-        if !staged.spacing.is_empty() {
-            staged.steepest = steepest;
-        }
+        let corners = core.axis.spacing.windows(2);
+        let slopes = corners.map(|pair| step / (pair[1] - pair[0]));
+        let steepest = slopes.reduce(Real::max).unwrap_or(T::ONE);
+        (staged.gain, staged.size) = (gain, size);
+        (staged.rates, staged.steepest) = (rates, steepest);
         Ok(Some(staged))
     }
 
     /// The stages as the core takes them.
-    fn core(&self, constants: &Constants<T>) -> Stages<'_, T> {
+    pub(super) fn core(&self, constants: &Constants<T>) -> Stages<'_, T> {
         Stages {
-            body: self.body,
-            axis: Axis {
-                load: Load {
-                    loads: &self.loads,
-                    shifts: &self.shifts,
-                    scales: &self.scales,
-                    gains: &self.gains,
-                    offsets: &self.offsets,
-                },
-                spacing: &self.spacing,
-            },
-            creep: Creep {
-                coefficients: &self.creep,
-                taus: &self.taus,
-            },
-            lag: self.lag,
             offset: constants.offset,
             falling: constants.falls,
+            ..self.constants.stages()
         }
     }
 
     /// Names of the stages that are there.
     pub(super) fn names(&self) -> Vec<&'static str> {
-        let all = [
-            ("body", self.body.is_some()),
-            ("load", !self.loads.is_empty() || self.parts.is_some()),
-            ("spacing", !self.spacing.is_empty()),
-            ("creep", !self.creep.is_empty()),
-            ("lag", self.lag > T::ZERO),
-        ];
-        let there = all.into_iter().filter(|(_, there)| *there);
-        there.map(|(name, _)| name).collect()
+        let by_load = |name| name == "load" && self.parts.is_some();
+        let has = |constants: &[Constant]| {
+            let mut numbers = constants.iter().flat_map(|c| self.constants.get(c.name));
+            numbers.any(|number| *number != T::ZERO)
+        };
+        Stages::<T>::declared()
+            .filter(|stage| by_load(stage.name) || has(stage.constants))
+            .map(|stage| stage.name)
+            .collect()
+    }
+
+    /// The constants that C has as arrays: those that are lists. Time constants act through factors
+    /// alone, and those of the body are single numbers.
+    pub(super) fn arrays(&self) -> impl Iterator<Item = (&'static str, &[T])> {
+        let single = |name: &str| ["ambient", "gain"].contains(&name);
+        let timed = |range| matches!(range, Range::Time | Range::TimeOrNone);
+        self.constants
+            .iter()
+            .filter(move |(constant, _)| !single(constant.name) && !timed(constant.range))
+            .map(|(constant, numbers)| (constant.name, numbers))
     }
 
     /// How many numbers the arrays of the constants have, without the start.
     pub(super) fn numbers(&self) -> usize {
-        let curves = [&self.shifts, &self.scales, &self.gains, &self.offsets];
-        let curves: usize = curves.iter().map(|curve| curve.len()).sum();
         let offsets = self.parts.as_ref().map_or(0, |parts| parts.offsets.len());
-        self.loads.len() + curves + self.spacing.len() + offsets
+        self.arrays()
+            .map(|(_, numbers)| numbers.len())
+            .sum::<usize>()
+            + offsets
     }
 
     /// Whether the inverse has to be refused, because a part has weights below zero.

@@ -30,7 +30,12 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> Result<String> {
                 true => staged::first_target(model)?,
                 false => input,
             };
-            let version = if parts.is_some() { 3 } else { 2 };
+            let version = match (staged::has_others(model), parts.is_some()) {
+                (false, false) => 2,
+                (false, true) => 3,
+                (true, false) => 4,
+                (true, true) => 5,
+            };
             (version, staged::lines(model, (signal, load)))
         }
     };

@@ -27,8 +27,7 @@ pub(super) fn is_loaded(model: &Model) -> bool {
 
 /// Whether the model has nothing but operators, all of them off at the start.
 pub(super) fn is_plain(model: &Model) -> bool {
-    let stages = !model.stages().axis.spacing.is_empty() || model.is_timed() || is_loaded(model);
-    !stages && model.fitted().is_none()
+    model.constants().is_none() && !is_loaded(model) && model.fitted().is_none()
 }
 
 /// The start values of input and load: the drive or input at the lower end, and the middle load.
@@ -62,40 +61,70 @@ pub(super) fn first_target(model: &Model) -> Result<f64> {
     Ok(model.step(&mut model.start(), sample)?.output)
 }
 
+/// The constants of the body, which have one line.
+const BODY: [&str; 4] = ["ambient", "gain", "tau_heating", "tau_cooling"];
+
+/// The constants that have a line in every version, and what the line is called.
+const VERSION_2: [(&str, &str); 9] = [
+    ("loads", "loads"),
+    ("shifts", "shifts"),
+    ("scales", "scales"),
+    ("gains", "gains"),
+    ("offsets", "offsets"),
+    ("spacing", "spacing"),
+    ("creep", "creep"),
+    ("creep_taus", "taus"),
+    ("lag", "lag"),
+];
+
+/// Whether the model has constants of stages that version 2 and 3 have no lines for.
+pub(super) fn has_others(model: &Model) -> bool {
+    let known = |name: &str| BODY.contains(&name) || VERSION_2.iter().any(|(k, _)| *k == name);
+    let constants = model.constants();
+    let mut others = constants
+        .iter()
+        .filter(|(constant, _)| !known(constant.name));
+    others.any(|(_, numbers)| !numbers.is_empty())
+}
+
 /// The lines of `model.txt` for stages and start.
 pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
-    let stages = model.stages();
+    let constants = model.constants();
     let start = model.fitted().map_or_else(Vec::new, |state| {
         [state.input()]
             .into_iter()
             .chain(state.turning_points())
             .collect()
     });
-    let body = stages.body.map_or_else(Vec::new, |body| {
-        vec![body.ambient, body.gain, body.tau_heating, body.tau_cooling]
-    });
+    let (in_body, others): (Vec<_>, Vec<_>) = constants
+        .iter()
+        .partition(|(constant, _)| BODY.contains(&constant.name));
+    let body: Vec<f64> = in_body
+        .into_iter()
+        .flat_map(|(_, list)| list)
+        .copied()
+        .collect();
     let (low, high) = model.drive_range();
-    let drive = if stages.body.is_some() {
-        &[low, high][..]
-    } else {
-        &[]
+    let drive = match model.thermal {
+        Some(_) => vec![low, high],
+        None => Vec::new(),
     };
-    let load = stages.axis.load;
-    let entries: [(&str, &[f64]); 13] = [
-        ("first", &[first.0, first.1]),
-        ("start", &start),
-        ("body", &body),
+    let mut entries = vec![
+        ("first", vec![first.0, first.1]),
+        ("start", start),
+        ("body", body),
         ("drive", drive),
-        ("loads", load.loads),
-        ("shifts", load.shifts),
-        ("scales", load.scales),
-        ("gains", load.gains),
-        ("offsets", load.offsets),
-        ("spacing", stages.axis.spacing),
-        ("creep", stages.creep.coefficients),
-        ("taus", stages.creep.taus),
-        ("lag", &[stages.lag]),
     ];
+    let whole = has_others(model);
+    entries.extend(others.into_iter().filter_map(|(constant, numbers)| {
+        let of_version_2 = VERSION_2.iter().find(|(name, _)| *name == constant.name);
+        let line = of_version_2.map(|(_, line)| *line);
+        let numbers = match (constant.name, numbers) {
+            ("lag", []) => vec![0.0],
+            _ => numbers.to_vec(),
+        };
+        Some((line.or(whole.then_some(constant.name))?, numbers))
+    }));
     let parts = parts(model).map_or_else(Vec::new, |load| {
         let (low, high) = load.range();
         vec![
@@ -103,9 +132,6 @@ pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
             ("parts", load.joined().0.to_vec()),
         ]
     });
-    let parts = parts
-        .iter()
-        .map(|(key, numbers)| (*key, numbers.as_slice()));
     let mut text = String::new();
     for (key, numbers) in entries.into_iter().chain(parts) {
         text += key;

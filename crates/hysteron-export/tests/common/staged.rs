@@ -2,10 +2,10 @@
 
 use super::reference::Number;
 use super::walks;
-use hysteron::{LoadPart, Model, Operator, Sign};
+use hysteron::{LoadPart, Model, Operator, Sign, StageConstants};
 use hysteron_core::{
-    Axis, Body, Creep, Direction, Load, Plane, Rates, StageState, Stages, State, Target, Turn,
-    Wanted, mix, table_len, turn_capacity,
+    Constant, Direction, Plane, Rates, StageState, Stages, State, Target, Turn, Wanted, mix,
+    table_len, turn_capacity,
 };
 use hysteron_export::{COptions, CReal, CSampling, c_texts};
 use rand::RngExt;
@@ -121,6 +121,14 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
         file["lag"] = tau(rng).into();
     }
     if coin(rng) {
+        let knots = rng.random_range(2..7);
+        file["version"] = 3.into();
+        file["stages"] = json!({
+            "curve_sums": sorted(rng, knots, -1.0, 9.0),
+            "curve_outputs": sorted(rng, knots, 2.0, 30.0),
+        });
+    }
+    if coin(rng) {
         let mut state = plain.start();
         let inputs: Vec<f64> = (0..9).map(|_| rng.random_range(low..high)).collect();
         plain.run(&mut state, &inputs, &mut [0.0; 9]).unwrap();
@@ -175,20 +183,21 @@ impl Case {
         self.sampling.dt = Some(dt);
     }
 
-    /// The range of outputs, at the load where it is widest, after creep.
+    /// The range of outputs, at the load where it is widest, behind all stages.
     pub fn widest(&self) -> f64 {
         let stages = self.model.stages();
         let gains = stages.axis.load.gains.iter().copied();
-        let gain = gains.reduce(f64::max).unwrap_or(1.0) * stages.creep.gain();
+        let gain = gains.reduce(f64::max).unwrap_or(1.0);
         let sum = |weights: &[f64]| weights.iter().sum::<f64>();
         let parts = self.model.load.iter().flat_map(|load| load.parts());
         let own = sum(self.model.weights());
         let largest = parts.map(|part| sum(&part.weights)).fold(own, f64::max);
-        let span = match self.model.operator() {
-            Operator::Mkp => 1.0,
-            _ => 2.0,
+        let off = match self.model.operator() {
+            Operator::Mkp => 0.0,
+            _ => -largest,
         };
-        span * gain * largest
+        let [low, high] = [off, largest].map(|sum| stages.behind.settled(gain * sum));
+        high - low
     }
 }
 
@@ -255,64 +264,26 @@ pub fn calls(rng: &mut StdRng, case: &Case, count: usize) -> Vec<Call> {
 
 /// The numbers of the stages in the number type.
 struct Numbers<T> {
-    body: Option<Body<T>>,
-    load: [Vec<T>; 5],
-    spacing: Vec<T>,
-    creep: [Vec<T>; 2],
-    lag: T,
+    constants: StageConstants<T>,
     offset: T,
     falling: bool,
 }
 
 impl<T: Number> Numbers<T> {
     fn of(model: &Model) -> Self {
-        let stages = model.stages();
-        let all = |numbers: &[f64]| numbers.iter().map(|&x| T::of(x)).collect::<Vec<T>>();
-        let load = stages.axis.load;
+        let convert = |_: &Constant, x| Ok::<_, ()>(T::of(x));
         Self {
-            body: stages.body.map(|body| Body {
-                ambient: T::of(body.ambient),
-                gain: T::of(body.gain),
-                tau_heating: T::of(body.tau_heating),
-                tau_cooling: T::of(body.tau_cooling),
-            }),
-            load: [
-                load.loads,
-                load.shifts,
-                load.scales,
-                load.gains,
-                load.offsets,
-            ]
-            .map(all),
-            spacing: all(stages.axis.spacing),
-            creep: [stages.creep.coefficients, stages.creep.taus].map(all),
-            lag: T::of(stages.lag),
-            offset: T::of(stages.offset),
+            constants: model.constants().map(convert).unwrap(),
+            offset: T::of(model.offset()),
             falling: model.sign() == Sign::Negative,
         }
     }
 
     fn stages(&self) -> Stages<'_, T> {
-        let [loads, shifts, scales, gains, offsets] = &self.load;
         Stages {
-            body: self.body,
-            axis: Axis {
-                load: Load {
-                    loads,
-                    shifts,
-                    scales,
-                    gains,
-                    offsets,
-                },
-                spacing: &self.spacing,
-            },
-            creep: Creep {
-                coefficients: &self.creep[0],
-                taus: &self.creep[1],
-            },
-            lag: self.lag,
             offset: self.offset,
             falling: self.falling,
+            ..self.constants.stages()
         }
     }
 }

@@ -144,8 +144,9 @@ impl<'m> Chain<'m> {
         let operators = self.at(load)?;
         search.weigh(&operators)?;
         let settled = |sum: f64| self.settled(loaded.gain * sum, dt).0;
-        let slope = settled(1.0) - settled(0.0);
         let (off, on) = operators.output_range();
+        // The steepest slope: as much of the sum the output may move within a tolerance.
+        let slope = self.steepest() * (self.timed(1.0, dt).0 - self.timed(0.0, dt).0) * loaded.gain;
         let seen = if slope > 0.0 {
             let sum = root(settled, wanted);
             // Where the sum is what it was but for rounding, it is just that.
@@ -172,13 +173,13 @@ impl<'m> Chain<'m> {
         let temperature = self.heated(last, drive, dt);
         search.travel(self.seen(&loaded, temperature))?;
         let (settled, crept) = self.settled(loaded.gain * search.output(), dt);
-        let gain = loaded.gain * self.gain_at_rest();
         self.memory = Some(Memory {
             temperature,
             crept,
             lagged: settled,
         });
-        let ends = [off, on].map(|sum| self.outward(&loaded, gain * sum));
+        let rest = |sum: f64| self.gain_at_rest() * self.curved(loaded.gain * sum);
+        let ends = [off, on].map(|sum| self.outward(&loaded, rest(sum)));
         let (least, greatest) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         let same = SAME * (greatest - least);
         let reach = aim.tolerance.max(same);
@@ -261,8 +262,31 @@ impl<'m> Chain<'m> {
         }
     }
 
-    /// Creep and lag: the output for the operators' `h`, and the outputs of the creep terms.
+    /// Curve, creep and lag: the output for the operators' `h`, and the outputs of the creep terms.
     fn settled(&self, h: f64, dt: f64) -> (f64, Vec<f64>) {
+        self.timed(self.curved(h), dt)
+    }
+
+    /// The output curve.
+    fn curved(&self, h: f64) -> f64 {
+        let constants = self.model.constants();
+        match constants.get("curve_sums") {
+            [] => h,
+            sums => line(sums, constants.get("curve_outputs"), h),
+        }
+    }
+
+    /// The steepest slope of the output curve.
+    fn steepest(&self) -> f64 {
+        let constants = self.model.constants();
+        let (sums, outputs) = (constants.get("curve_sums"), constants.get("curve_outputs"));
+        let pieces = sums.windows(2).zip(outputs.windows(2));
+        let slopes = pieces.map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0]));
+        slopes.reduce(f64::max).unwrap_or(1.0)
+    }
+
+    /// Creep and lag.
+    fn timed(&self, h: f64, dt: f64) -> (f64, Vec<f64>) {
         let faded = |last: Option<f64>, now: f64, tau: f64| match last {
             Some(last) if tau > 0.0 => now + (last - now) * (-dt / tau).exp(),
             _ => now,

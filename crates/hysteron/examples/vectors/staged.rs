@@ -20,6 +20,7 @@ enum Stage {
     Spacing,
     Creep,
     Lag,
+    Curve,
     /// Weights and offset of the second order in the load.
     Weights,
 }
@@ -52,9 +53,13 @@ pub fn all() -> Result<Vec<(String, String)>> {
     both("spacing-mkp-5", Mkp, &[Stage::Spacing], line)?;
     both("creep-mkp-5", Mkp, &[Stage::Creep], line)?;
     both("lag-mkp-5", Mkp, &[Stage::Lag], line)?;
+    both("curve-mkp-5", Mkp, &[Stage::Curve], line)?;
     both("chain-mkp-5", Mkp, &EVERY, line)?;
     both("chain-kp-5", Kp, &EVERY, (-3.5, Negative))?;
     both("chain-relay-5", Relay, &EVERY, line)?;
+    let curved = [&EVERY[..], &[Stage::Curve]].concat();
+    both("chain-curve-mkp-5", Mkp, &curved, line)?;
+    both("chain-curve-kp-5", Kp, &curved, (-3.5, Negative))?;
     both("weights-mkp-5", Mkp, &[Stage::Weights], line)?;
     let whole = [&EVERY[..], &[Stage::Weights]].concat();
     both("chain-weights-mkp-5", Mkp, &whole, line)?;
@@ -94,6 +99,14 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
                 ]);
             }
             Stage::Lag => text["lag"] = 0.0625.into(),
+            Stage::Curve => {
+                text["version"] = 3.into();
+                // From the middle of the sums of these operators to beyond them.
+                let total: f64 = plain.weights().iter().sum();
+                let knots = [0.125, 0.375, 0.5, 1.25].map(|share| short(share * total));
+                let outputs = [0.0, 0.5, 0.625, 1.5].map(|share| short(share * total));
+                text["stages"] = json!({"curve_sums": knots, "curve_outputs": outputs});
+            }
             Stage::Weights => {
                 let offset = |part: usize| plain.offset() + [0.0, 1.5, -0.25][part];
                 let weights = |part: usize| -> Vec<f64> {

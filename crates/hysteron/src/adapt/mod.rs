@@ -277,8 +277,8 @@ impl Learned {
     }
 }
 
-/// Adapts the operators between the stages of a model. The errors are those of the operators: before
-/// creep and lag.
+/// Adapts the operators between the stages of a model. The errors are those of the operators: in
+/// front of the stages behind them.
 fn adapt_within(
     model: &Model,
     recordings: &[Recording],

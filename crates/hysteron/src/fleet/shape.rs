@@ -5,7 +5,7 @@ use hysteron_core::operators;
 
 /// The major loop of a model in a few numbers.
 ///
-/// The loop runs over the active range of the plane; without creep, lag and thermal body, and in
+/// The loop runs over the active range of the plane; without stages that depend on time, and in
 /// the middle of the loads. Every number is the mean of the rising and the falling branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {

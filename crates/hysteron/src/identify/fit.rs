@@ -238,6 +238,15 @@ impl<'a> Fit<'a> {
         self
     }
 
+    /// Number of pieces of an output curve behind the operators, 1 to 100; 0 for none.
+    /// [`Auto`](crate::Auto) takes a curve only if it predicts parts of the recordings that were
+    /// left out. Recordings with a load get none.
+    #[must_use]
+    pub fn curve(mut self, pieces: impl Into<Choice<usize>>) -> Self {
+        self.options.curve = pieces.into();
+        self
+    }
+
     /// Whether a thermal body in front of the operators is identified together with the weights.
     ///
     /// The recordings need time. Their input is a drive that heats (squared current, squared

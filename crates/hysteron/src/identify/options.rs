@@ -98,6 +98,7 @@ pub enum Spacing {
 /// | `spacing` | uniform; auto | uniform, auto | where the levels are |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
 /// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
+/// | `curve` | off (0) | auto, 1 to 100 | pieces of a curve behind the operators |
 /// | `bootstrap` | 0; 200 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
@@ -135,6 +136,8 @@ pub struct FitOptions {
     pub creep: Choice<usize>,
     /// Time constant of a lag of the whole, in seconds.
     pub lag: Choice<f64>,
+    /// Number of pieces of an output curve.
+    pub curve: Choice<usize>,
     /// Number of bootstrap replicates.
     pub bootstrap: usize,
 }
@@ -209,6 +212,7 @@ impl Default for FitOptions {
             spacing: Spacing::Uniform,
             creep: Choice::Fixed(0),
             lag: Choice::Fixed(0.0),
+            curve: Choice::Fixed(0),
             bootstrap: 0,
         }
     }

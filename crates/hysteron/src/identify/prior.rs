@@ -87,7 +87,7 @@ pub struct WeightPrior {
 
 impl WeightPrior {
     /// The prior of `models`, which have the same plane, spacing, operator and sign, and neither a
-    /// thermal body nor a load nor creep.
+    /// load nor stages that depend on time or stand behind the operators.
     ///
     /// # Errors
     /// [`Error::Fit`] for fewer than 10 models, for models that differ in more than weights and
@@ -106,8 +106,8 @@ impl WeightPrior {
             )));
         }
         if !is_static(first) {
-            let problem = "a prior is of weights alone, and these models have a thermal body, a \
-                           load, creep or a lag";
+            let problem = "a prior is of weights alone, and these models have a load or stages \
+                           behind the operators";
             return Err(Error::Fit(problem.into()));
         }
         let errors = models.iter().map(|model| Some(model.fit.as_ref()?.rmse));
@@ -260,7 +260,8 @@ fn same_kind(a: &Model, b: &Model) -> bool {
 
 /// Whether the model has no stage besides the spacing of its levels.
 fn is_static(model: &Model) -> bool {
-    !model.is_timed() && model.load.is_none()
+    let behind = model.stages().behind.there().any(|(_, there)| there);
+    !model.is_timed() && !behind && model.load.is_none()
 }
 
 /// Offset and weights for states from 0 to 1 and a rising output: see `Problem::load_parts`.

@@ -22,7 +22,7 @@ pub struct FitOption {
 }
 
 /// The options of a fit. `docs/options.md` has the same table.
-pub const FIT_OPTIONS: [FitOption; 17] = [
+pub const FIT_OPTIONS: [FitOption; 18] = [
     FitOption {
         name: "operator",
         default: "`mkp`",
@@ -116,6 +116,12 @@ pub const FIT_OPTIONS: [FitOption; 17] = [
         purpose: "time constant of a lag of the output",
     },
     FitOption {
+        name: "curve",
+        default: "`off`",
+        range: "`off`, `auto`, 1 to 100",
+        purpose: "pieces of an output curve behind the operators",
+    },
+    FitOption {
         name: "bootstrap",
         default: "200, from 25 levels on 60, from 45 on 0",
         range: "up to 10,000",
@@ -199,6 +205,9 @@ impl Fit<'_> {
             ("lag", "off") => self.lag(0.0),
             ("lag", "auto") => self.lag(Auto),
             ("lag", text) => self.lag(finite(text).filter(|seconds| *seconds >= 0.0)?),
+            ("curve", "off") => self.curve(0),
+            ("curve", "auto") => self.curve(Auto),
+            ("curve", text) => self.curve(number(text)?),
             ("bootstrap", text) => self.bootstrap(Choice::Fixed(number(text)?)),
             ("thermal", "first-order") => self.thermal(true),
             _ => return None,

@@ -179,8 +179,8 @@ impl Model {
 }
 
 pub(crate) fn needs_time() -> Error {
-    let what = "the model has a thermal body, creep or a lag, which depend on time: it needs the \
-                time of each sample, which does not go back";
+    let what =
+        "the model depends on time: it needs the time of each sample, which does not go back";
     let remedy = Remedy::new("give it ({})", [Setting::any("time")]);
     Error::Thermal(what.into()).remedied(remedy)
 }

@@ -1,23 +1,26 @@
 //! The model file: JSON with a version. Every error names the field.
 //!
 //! Version 2 adds the stages and the start: `load.curves`, `thermal.ambient`, `drive`, `spacing`,
-//! `creep`, `lag` and `start`. A model that needs none of them is written as version 1.
+//! `creep`, `lag` and `start`. Version 3 adds `stages`: the constants of all other stages, as lists
+//! by the names that the stages declare. A model is written in the lowest version that has what it
+//! needs.
 
 use crate::error::{Error, Result};
 use crate::model::Plane;
-use crate::model::after::{After, CreepTerm};
 use crate::model::body::{FirstOrder, range_of};
+use crate::model::constants::{CreepTerm, StageConstants};
 use crate::model::load::{LoadCurves, LoadDependence, LoadPart};
 use crate::model::start::FittedStart;
 use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
 use crate::recording::{LARGEST, Quantity};
-use hysteron_core::Operator;
+use hysteron_core::{Constant, Operator, Stages};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 pub(crate) const FORMAT: &str = "hysteron-model";
 /// The versions that can be read.
-const VERSIONS: std::ops::RangeInclusive<u64> = 1..=2;
+const VERSIONS: std::ops::RangeInclusive<u64> = 1..=3;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
@@ -43,6 +46,8 @@ struct File {
     creep: Vec<CreepTerm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     lag: Option<f64>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    stages: BTreeMap<String, Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<FittedStart>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -50,8 +55,11 @@ struct File {
 }
 
 impl File {
-    /// The first entry that only version 2 has.
-    fn beyond_version_1(&self) -> Option<&'static str> {
+    /// The version that is needed, and an entry that needs it.
+    fn needed(&self) -> (u64, &'static str) {
+        if !self.stages.is_empty() {
+            return (3, "stages");
+        }
         let curves = self.load.as_ref().is_some_and(|load| load.curves.is_some());
         let ambient = |ThermalEntry::FirstOrder(body): &ThermalEntry| body.ambient != 0.0;
         [
@@ -67,7 +75,8 @@ impl File {
             ("start", self.start.is_some()),
         ]
         .into_iter()
-        .find_map(|(name, present)| present.then_some(name))
+        .find_map(|(name, present)| present.then_some((2, name)))
+        .unwrap_or((1, "format"))
     }
 }
 
@@ -231,8 +240,9 @@ impl Model {
     }
 
     fn of_file(file: File) -> Result<Self> {
-        if let Some(field) = file.beyond_version_1().filter(|_| file.version == 1) {
-            return Err(fault(field, "this needs `version` 2".into()));
+        let (needed, field) = file.needed();
+        if needed > file.version {
+            return Err(fault(field, format!("this needs `version` {needed}")));
         }
         let in_field = |field: &'static str| {
             move |error: hysteron_core::Error| fault(field, error.to_string())
@@ -277,23 +287,14 @@ impl Model {
             let problem = "it is the range of the drive of a thermal body, and there is none";
             return Err(fault("drive", problem.into()));
         }
+        model.behind = behind(file.creep, file.lag, file.stages)?;
         model.spacing = file.spacing;
-        model.after = After::new(&file.creep, file.lag.unwrap_or_default());
         model.check_stages().map_err(|error| {
             let field = match &error {
-                Error::Core(hysteron_core::Error::Stage { stage }) => match *stage {
-                    stage @ ("loads" | "shifts" | "scales" | "gains" | "offsets") => {
-                        format!("load.curves.{stage}")
-                    }
-                    stage @ ("ambient" | "gain" | "tau_heating" | "tau_cooling") => {
-                        format!("thermal.{stage}")
-                    }
-                    "offset" => "output.offset".to_owned(),
-                    stage => stage.to_owned(),
-                },
-                _ => "spacing".into(),
+                Error::Core(hysteron_core::Error::Stage { stage }) => (place(stage), hint(stage)),
+                _ => ("spacing".into(), String::new()),
             };
-            fault(&field, format!("{error}{}", hint(&field)))
+            fault(&field.0, format!("{error}{}", field.1))
         })?;
         let mut model = model
             .with_start(file.start)
@@ -358,17 +359,25 @@ impl Model {
             thermal: self.thermal.map(ThermalEntry::FirstOrder),
             drive: self.drive.map(|(min, max)| DriveEntry { min, max }),
             spacing: self.spacing.clone(),
-            creep: self.after.terms(),
-            lag: Some(self.after.lag).filter(|lag| *lag > 0.0),
+            creep: self.behind.terms(),
+            lag: Some(self.behind.lag()).filter(|lag| *lag > 0.0),
+            stages: self.others(),
             start: self.start.clone(),
             fit,
         };
-        let version = if file.beyond_version_1().is_some() {
-            2
-        } else {
-            1
-        };
+        let (version, _) = file.needed();
         File { version, ..file }
+    }
+
+    /// The constants that version 2 has no entry for.
+    fn others(&self) -> BTreeMap<String, Vec<f64>> {
+        let all = self.behind.iter();
+        let others = all.filter(|(constant, numbers)| {
+            !numbers.is_empty() && place(constant.name).starts_with(OTHERS)
+        });
+        others
+            .map(|(constant, numbers)| (constant.name.to_owned(), numbers.to_vec()))
+            .collect()
     }
 }
 
@@ -462,24 +471,49 @@ fn agrees_with_parts(model: &Model, load: &LoadDependence) -> Result<()> {
     }
 }
 
-/// What a stage has to be.
-fn hint(field: &str) -> &'static str {
-    match field {
-        "load.curves.loads" => ": loads ascend, and are no larger than 1e140",
-        "load.curves.shifts" | "load.curves.offsets" => {
-            ": it has a number up to 1e140 for each load, or none at all"
-        }
-        "load.curves.scales" | "load.curves.gains" => {
-            ": it has a number from 1e-6 to 1e6 for each load, or none at all"
-        }
-        "spacing" => ": it has K + 1 finite numbers, one above the other",
-        "creep" => ": at most 4 terms, coefficients from 0 to 1e6, times from 1e-9 s to 1e9 s",
-        "lag" => ": 0, or from 1e-9 s to 1e9 s",
-        "thermal.tau_heating" | "thermal.tau_cooling" => ": from 1e-9 s to 1e9 s",
-        "thermal.gain" => ": from 1e-140 to 1e140",
-        "thermal.ambient" | "output.offset" | "weights" => ": outputs and inputs are up to 1e140",
-        _ => "",
+/// Where the constants of stages stand that have no entry of their own.
+const OTHERS: &str = "stages.";
+
+/// The entry that has a constant of a stage, or that has a whole stage.
+fn place(stage: &str) -> String {
+    let mut declared = Stages::<f64>::declared();
+    let has = |constants: &[Constant]| constants.iter().any(|constant| constant.name == stage);
+    let of = declared.find(|declared| has(declared.constants));
+    match (of.map(|declared| declared.name), stage) {
+        (Some("load"), curve) => format!("load.curves.{curve}"),
+        (Some("body"), constant) => format!("thermal.{constant}"),
+        (_, "offset") => "output.offset".into(),
+        (_, "creep" | "creep_taus") => "creep".into(),
+        (Some("spacing" | "lag") | None, entry) => entry.into(),
+        (Some(_), constant) => format!("{OTHERS}{constant}"),
     }
+}
+
+/// What a constant of a stage has to be.
+fn hint(stage: &str) -> String {
+    if ["offset", "weights"].contains(&stage) {
+        return ": outputs are up to 1e140".into();
+    }
+    let mut constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
+    match constants.find(|constant| constant.name == stage) {
+        Some(constant) => format!(": {}; {}", constant.meaning, constant.range.words()),
+        None => String::new(),
+    }
+}
+
+/// The constants of the stages behind the operators.
+fn behind(
+    creep: Vec<CreepTerm>,
+    lag: Option<f64>,
+    others: BTreeMap<String, Vec<f64>>,
+) -> Result<StageConstants<f64>> {
+    if let Some(name) = others.keys().find(|name| !place(name).starts_with(OTHERS)) {
+        let field = format!("{OTHERS}{name}");
+        return Err(fault(&field, "there is no such constant of a stage".into()));
+    }
+    let of_version_2 = StageConstants::after(&creep, lag.unwrap_or_default());
+    let all = of_version_2.and_then(|constants| constants.with(others));
+    all.map_err(|error| fault("stages", error.to_string()))
 }
 
 fn parse<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T> {

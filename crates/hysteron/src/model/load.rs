@@ -314,11 +314,12 @@ impl Model {
         let loaded = curves
             .map_or(hysteron_core::Load::NONE, LoadCurves::core)
             .at(Some(load))?;
-        let sum = self.sign().factor() * loaded.gain * weights.iter().sum::<f64>();
-        let offset = offset + loaded.offset;
+        let sum = loaded.gain * weights.iter().sum::<f64>();
+        let (offset, behind) = (offset + loaded.offset, self.stages().behind);
+        let output = |sum| offset + self.sign().factor() * behind.untimed(sum);
         Ok(match self.operator() {
-            Operator::Mkp => (offset, offset + sum),
-            Operator::Kp | Operator::Relay => (offset - sum, offset + sum),
+            Operator::Mkp => (output(0.0), output(sum)),
+            Operator::Kp | Operator::Relay => (output(-sum), output(sum)),
         })
     }
 

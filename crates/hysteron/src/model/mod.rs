@@ -1,18 +1,18 @@
 //! The model of an actuator: operators, the stages in front of them, and a record of how they were
 //! identified.
 //!
-//! `operators` are the weighted operators; `body`, `load` and `after` are the constants of the
+//! `operators` are the weighted operators; `body`, `load` and `constants` are those of the
 //! stages around them, and `stages` hands them to the core. `state` moves a model sample by sample
 //! from its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it
 //! (`policy` says how). `band` is the interval around the output, and `bounds` where it may really be. `file` reads and writes models;
 //! `summary`, `smooth`, `validation`, `confidence` and `excitation` are the record of the
 //! fit.
 
-mod after;
 mod band;
 mod body;
 mod bounds;
 mod confidence;
+mod constants;
 mod excitation;
 mod file;
 mod inverse;
@@ -30,14 +30,13 @@ mod surroundings;
 mod validation;
 mod within;
 
-pub(crate) use after::After;
-pub use after::CreepTerm;
 pub(crate) use band::add_variance;
 pub use band::{Band, BandEvaluation};
 pub use body::FirstOrder;
 pub(crate) use body::needs_time;
 pub use bounds::Bounds;
 pub use confidence::{Confidence, INTERVAL};
+pub use constants::{CreepTerm, StageConstants};
 pub use excitation::Excitation;
 #[cfg(feature = "data")]
 pub(crate) use file::{FORMAT, no_model};
@@ -54,7 +53,7 @@ pub use state::{Sample, State};
 pub use summary::{FitSummary, Outlier, SeenFile, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Criterion, RivalScore, Score, Validation};
-pub(crate) use within::Found;
+pub(crate) use within::{Bend, Found};
 
 use crate::error::{Error, Result};
 use crate::recording::Quantity;
@@ -98,8 +97,8 @@ pub struct Model {
     pub drive: Option<(f64, f64)>,
     /// The inputs at the corners of the grid; empty for equal distances.
     spacing: Vec<f64>,
-    /// Creep and lag.
-    after: after::After,
+    /// The constants of the stages behind the operators.
+    behind: StageConstants<f64>,
     /// The state found before the first sample fitted.
     start: Option<FittedStart>,
     /// How the model was obtained, if it was identified.
@@ -117,7 +116,7 @@ impl From<Operators> for Model {
             thermal: None,
             drive: None,
             spacing: Vec::new(),
-            after: after::After::default(),
+            behind: StageConstants::default(),
             start: None,
             fit: None,
         }
@@ -157,6 +156,10 @@ impl Model {
         if let Some(load) = &self.load {
             return Err(load.one_is_needed());
         }
+        if !self.behind.is_none() {
+            let what = "the model has a stage behind its operators, which this cannot have";
+            return Err(Error::Fit(what.into()));
+        }
         if !self.spacing.is_empty() {
             let what = "the model's levels are not at equal distances, which this needs";
             let remedy = Remedy::new("fit with {}", [Setting::word("spacing", "uniform")]);
@@ -195,21 +198,24 @@ impl Model {
         self.operators.sign()
     }
 
-    /// The outputs with every operator off and with every operator on, in the output's unit.
+    /// The outputs with every operator off and with every operator on, in the output's unit. Of the
+    /// stages behind the operators, those that depend on time have no part in it.
     #[must_use]
     pub fn output_range(&self) -> (f64, f64) {
-        self.operators.output_range()
+        let (off, on) = self.operators.output_range();
+        (self.untimed(off), self.untimed(on))
     }
 
     /// The default tolerance for targets: [`crate::NOISE`] times the output's range. Smaller
     /// reversals of a target count as noise.
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
-        self.operators.usual_tolerance()
+        let (off, on) = self.output_range();
+        crate::NOISE * (on - off).abs()
     }
 
     /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`
-    /// ([`State::input`]), to the last bit. Body, creep and lag are at rest with the next sample.
+    /// ([`State::input`]), to the last bit. The stages are at rest with the next sample.
     ///
     /// # Errors
     /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.

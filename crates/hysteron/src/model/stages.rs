@@ -1,8 +1,7 @@
 //! The stages of a model, in the form that the core runs.
 
 use crate::error::{Error, Result};
-use crate::model::after::After;
-use crate::model::{CreepTerm, Model};
+use crate::model::{CreepTerm, FirstOrder, Model, StageConstants};
 use hysteron_core::{Axis, Load, Stages};
 
 impl Model {
@@ -17,11 +16,36 @@ impl Model {
                 load: curves.map_or(Load::NONE, |curves| curves.core()),
                 spacing: &self.spacing,
             },
-            creep: self.after.creep(),
-            lag: self.after.lag,
+            behind: self.behind.stages().behind,
             offset: self.offset(),
             falling: self.sign().factor() < 0.0,
         }
+    }
+
+    /// The numbers of each constant, where the model has them, in the order of
+    /// [`Stages::declared`](hysteron_core::Stages::declared).
+    pub fn stage_lists(&self) -> impl Iterator<Item = &[f64]> {
+        let of_body = |constant: fn(&FirstOrder) -> &f64| match &self.thermal {
+            Some(body) => std::slice::from_ref(constant(body)),
+            None => &[],
+        };
+        let curves = self.load.as_ref().and_then(|load| load.curves.as_ref());
+        let load = curves.map_or(Load::NONE, |curves| curves.core());
+        let in_front = [
+            of_body(|body| &body.ambient),
+            of_body(|body| &body.gain),
+            of_body(|body| &body.tau_heating),
+            of_body(|body| &body.tau_cooling),
+            load.loads,
+            load.shifts,
+            load.scales,
+            load.gains,
+            load.offsets,
+            &self.spacing,
+        ];
+        let behind = self.behind.iter().skip(in_front.len());
+        let behind = behind.map(|(_, numbers)| numbers);
+        in_front.into_iter().chain(behind)
     }
 
     /// Checks the constants of all stages.
@@ -35,7 +59,7 @@ impl Model {
         self.load.is_none()
             && self.thermal.is_none()
             && self.spacing.is_empty()
-            && self.after.is_none()
+            && self.behind.is_none()
     }
 
     /// Whether a stage depends on time: each sample then needs the time since the one before.
@@ -65,13 +89,53 @@ impl Model {
     /// The terms of the creep after the operators.
     #[must_use]
     pub fn creep(&self) -> Vec<CreepTerm> {
-        self.after.terms()
+        self.behind.terms()
     }
 
     /// Time constant of the lag after the operators, in seconds; 0 for none.
     #[must_use]
     pub fn lag(&self) -> f64 {
-        self.after.lag
+        self.behind.lag()
+    }
+
+    /// The output of the stages behind the operators that do not depend on time, for an output of
+    /// the operators.
+    pub(crate) fn untimed(&self, output: f64) -> f64 {
+        if self.behind.is_none() {
+            return output;
+        }
+        let sign = self.sign().factor();
+        let sum = sign * (output - self.offset());
+        self.offset() + sign * self.stages().behind.untimed(sum)
+    }
+
+    /// The same model with other constants of the stages behind the operators, by their names.
+    ///
+    /// ```
+    /// # use hysteron::{Model, Operator, Plane, Sign};
+    /// # let plane = Plane::new(1.0, 2.0, 2)?;
+    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// let knots = [("curve_sums", vec![0.0, 1.0, 3.0]), ("curve_outputs", vec![0.0, 4.0, 5.0])];
+    /// let model = model.with_behind(knots)?;
+    /// assert_eq!(model.step(&mut model.start(), 2.0)?.output, 5.0); // of a sum of 3
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Core`] as [`StageConstants::new`], and for a constant out of its range.
+    pub fn with_behind<N: AsRef<str>>(
+        mut self,
+        named: impl IntoIterator<Item = (N, Vec<f64>)>,
+    ) -> Result<Self> {
+        let constants = self.behind.with(named)?;
+        // What stands in front of the operators has fields of its own.
+        let behind = constants.stages().behind;
+        self.behind = StageConstants::of(&Stages {
+            behind,
+            ..Stages::NONE
+        });
+        self.check_stages()?;
+        Ok(self)
     }
 
     /// The same model with creep and lag after the operators.
@@ -80,9 +144,16 @@ impl Model {
     /// [`Error::Core`] for more than [`hysteron_core::MAX_CREEP`] terms, a negative coefficient, a
     /// time constant that is not above zero, and a negative lag.
     pub fn with_after(mut self, creep: &[CreepTerm], lag: f64) -> Result<Self> {
-        self.after = After::new(creep, lag);
+        self.behind = StageConstants::after(creep, lag)?;
         self.check_stages()?;
         Ok(self)
+    }
+
+    /// The constants of all stages, by the names that the stages declare
+    /// ([`Stages::declared`](hysteron_core::Stages::declared)).
+    #[must_use]
+    pub fn constants(&self) -> StageConstants<f64> {
+        StageConstants::of(&self.stages())
     }
 
     /// The input where the operators are at their lowest and at their highest: the temperature

@@ -16,7 +16,7 @@ pub struct FittedStart {
 
 impl Model {
     /// The state that the model starts from: the one that its fit kept, or else every operator off.
-    /// Body, creep and lag are at rest with the first input.
+    /// The stages are at rest with the first input.
     #[must_use]
     pub fn start(&self) -> State {
         self.fitted().unwrap_or_else(|| self.off())

@@ -3,10 +3,7 @@
 use crate::error::Result;
 use crate::model::load::no_load;
 use crate::model::{Model, OperatorState};
-use hysteron_core::{Error, MAX_CREEP, Output, StageState, mix};
-
-/// How many numbers [`State::stage_numbers`] has.
-const STAGE_NUMBERS: usize = MAX_CREEP + 3;
+use hysteron_core::{Error, Output, STATE_NUMBERS, StageState, mix};
 
 /// One input sample of a model. A plain number converts to a sample with that input only.
 pub type Sample = hysteron_core::Sample<f64>;
@@ -111,14 +108,14 @@ impl State {
         self.operators.is_rising()
     }
 
-    /// What body, creep and lag remember, for saving: 0 or 1 for whether there was a sample, the
-    /// temperature, the output of each of four creep terms, the lagged sum.
+    /// What the stages remember, for saving: 0 or 1 for whether there was a sample, the temperature,
+    /// and what each stage behind the operators remembers.
     #[must_use]
-    pub fn stage_numbers(&self) -> [f64; STAGE_NUMBERS] {
+    pub fn stage_numbers(&self) -> [f64; STATE_NUMBERS] {
         self.stages.to_numbers()
     }
 
-    /// The same state, in which body, creep and lag remember these numbers
+    /// The same state, in which the stages remember these numbers
     /// ([`State::stage_numbers`]). With [`Model::restore`] it is the whole state.
     ///
     /// ```
@@ -138,7 +135,7 @@ impl State {
     ///
     /// # Errors
     /// [`crate::Error::Core`] with the index of a number that is not finite.
-    pub fn with_stage_numbers(self, numbers: &[f64; STAGE_NUMBERS]) -> Result<Self> {
+    pub fn with_stage_numbers(self, numbers: &[f64; STATE_NUMBERS]) -> Result<Self> {
         let stages = StageState::from_numbers(numbers)?;
         Ok(Self { stages, ..self })
     }

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 /// has moved.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Surroundings<'a> {
-    /// Time in seconds; needed by a model with a thermal body, creep or a lag.
+    /// Time in seconds; needed by a model that depends on it.
     pub time: Option<&'a [f64]>,
     /// The load; needed by a model that depends on one.
     pub load: Option<&'a [f64]>,

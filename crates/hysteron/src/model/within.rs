@@ -2,10 +2,10 @@
 //! on such a recording, and its result goes back between the stages.
 
 use crate::error::{Error, Result};
-use crate::model::after::After;
-use crate::model::{FirstOrder, LoadCurves, Model, Operators, Surroundings};
+use crate::model::{FirstOrder, LoadCurves, Model, Operators, Sign, StageConstants, Surroundings};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use hysteron_core::Curve;
 use std::borrow::Cow;
 
 /// The stages that a fit found.
@@ -15,7 +15,37 @@ pub(crate) struct Found {
     pub(crate) drive: Option<(f64, f64)>,
     pub(crate) curves: Option<LoadCurves>,
     pub(crate) spacing: Vec<f64>,
-    pub(crate) after: After,
+    pub(crate) behind: StageConstants<f64>,
+    pub(crate) curve: Option<Bend>,
+}
+
+/// A curve from the output of the operators, in its unit and with its sign, to the output.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Bend {
+    pub(crate) sums: Vec<f64>,
+    pub(crate) outputs: Vec<f64>,
+}
+
+impl Bend {
+    pub(crate) fn core(&self) -> Curve<'_, f64> {
+        Curve {
+            sums: &self.sums,
+            outputs: &self.outputs,
+        }
+    }
+
+    /// The curve over the operators' sum `h` alone, where these give `offset + sign · h`: the offset
+    /// of the output, sums and outputs.
+    pub(crate) fn anchored(&self, offset: f64, sign: Sign) -> (f64, Vec<f64>, Vec<f64>) {
+        let (sign, base) = (sign.factor(), self.core().at(offset));
+        let mut sums: Vec<f64> = self.sums.iter().map(|h| sign * (h - offset)).collect();
+        let mut outputs: Vec<f64> = self.outputs.iter().map(|y| sign * (y - base)).collect();
+        if sign < 0.0 {
+            sums.reverse();
+            outputs.reverse();
+        }
+        (base, sums, outputs)
+    }
 }
 
 impl Model {
@@ -31,7 +61,7 @@ impl Model {
     }
 
     /// The recording as [`Model::within`] sees it: its input behind body, load and spacing, its
-    /// output before creep and lag. For a model at one load.
+    /// output in front of the stages behind the operators. For a model at one load.
     ///
     /// # Errors
     /// As [`Model::run_in`]; [`Error::Thermal`] where time stands still and the model has a lag.
@@ -45,7 +75,7 @@ impl Model {
         let around = Surroundings::of(self, recording);
         Ok(Cow::Owned(Recording {
             input: self.seen(&recording.input, around)?.into_owned(),
-            output: self.before_creep(recording)?,
+            output: self.before_stages(recording)?,
             load: None,
             ..recording.clone()
         }))
@@ -59,17 +89,24 @@ impl Model {
             load.curves = found.curves;
         }
         self.spacing = found.spacing;
-        self.after = found.after;
-        // The weights were fitted to outputs without creep, whose offset did not creep either.
-        let gain = self.after.creep().gain();
-        if gain != 1.0 {
-            let offset = gain * self.offset();
+        let (offset, sign) = (self.offset(), self.sign());
+        let anchored = found.curve.map(|curve| curve.anchored(offset, sign));
+        let offset = anchored.as_ref().map_or(offset, |(offset, ..)| *offset);
+        self.behind = found.behind;
+        // The weights were fitted to what is in front of these stages, and so was the offset.
+        let offset = self.stages().behind.settled(offset);
+        if offset != self.offset() {
             let (operator, plane) = (self.operator(), *self.plane());
             let weights = self.weights().to_vec();
             self.operators = Operators::new(operator, plane, weights, offset, self.sign())?;
         }
         self.check_stages()?;
-        Ok(self)
+        match anchored {
+            None => Ok(self),
+            Some((_, sums, outputs)) => {
+                self.with_behind([("curve_sums", sums), ("curve_outputs", outputs)])
+            }
+        }
     }
 
     /// The same stages around other operators.
@@ -80,10 +117,10 @@ impl Model {
         model
     }
 
-    /// The measured output without creep and lag: what the operators must have given.
-    pub(crate) fn before_creep(&self, recording: &Recording) -> Result<Vec<f64>> {
+    /// The measured output in front of the stages behind the operators: what these must have given.
+    pub(crate) fn before_stages(&self, recording: &Recording) -> Result<Vec<f64>> {
         let stages = self.stages();
-        if self.after.is_none() {
+        if self.behind.is_none() {
             return Ok(recording.output.clone());
         }
         let time = recording

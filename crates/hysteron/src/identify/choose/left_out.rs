@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::identify::choose::validate::{Candidates, choose};
-use crate::identify::options::{FitOptions, Spacing};
+use crate::identify::options::{Choice, FitOptions, Spacing};
 use crate::identify::weights::problem::Problem;
 use crate::model::Smooth;
 use crate::progress::Progress;
@@ -41,16 +41,19 @@ pub struct LeftOut {
 ///
 /// # Errors
 /// As [`crate::Fit::run`]; [`crate::Error::Fit`] if there is only one branch, and for options that
-/// ask for spacing, creep or a lag.
+/// ask for spacing or for stages behind the operators.
 pub fn left_out(
     recordings: &[Recording],
     options: &FitOptions,
     candidates: Option<&Candidates>,
     progress: Progress<'_>,
 ) -> Result<LeftOut> {
-    if options.spacing != Spacing::Uniform || options.asks_after() {
+    if options.spacing != Spacing::Uniform
+        || options.asks_after()
+        || options.curve != Choice::Fixed(0)
+    {
         return Err(Error::Fit(
-            "branches are left out of fits of the operators alone: without spacing, creep and lag"
+            "branches are left out of fits of the operators alone: without spacing and stages behind them"
                 .into(),
         ));
     }

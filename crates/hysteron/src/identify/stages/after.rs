@@ -4,13 +4,15 @@
 use crate::error::{Error, Result};
 use crate::identify::options::{Choice, FitOptions};
 use crate::identify::weights::problem::Problem;
-use crate::model::{After, CreepTerm, Model, Operators, Smooth};
+use crate::model::{CreepTerm, Model, Operators, Smooth, StageConstants};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::range;
 use hysteron_core::MAX_CREEP;
 use serde::Serialize;
+
+type After = StageConstants<f64>;
 
 /// Each recording is divided into this many blocks of time; those with an odd number are left out
 /// first, then the others.
@@ -113,7 +115,7 @@ pub(super) fn before(after: &After, recordings: &[Recording]) -> Result<Vec<Reco
     let around = around(after, recordings)?;
     let undone = |recording: &Recording| {
         Ok(Recording {
-            output: around.before_creep(recording)?,
+            output: around.before_stages(recording)?,
             ..recording.clone()
         })
     };
@@ -125,7 +127,7 @@ fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
     let plane = crate::identify::plane_of(&recordings[0], 2)?;
     let operator = hysteron_core::Operator::Mkp;
     let operators = Operators::new(operator, plane, vec![0.0; 3], 0.0, Default::default())?;
-    Model::from(operators).with_after(&after.terms(), after.lag)
+    Model::from(operators).with_after(&after.terms(), after.lag())
 }
 
 /// A recording without time, for options that ask for creep or a lag.
@@ -185,7 +187,7 @@ impl<'a> Search<'a> {
     /// The best creep of `count` terms with this lag, and its error on blocks left out.
     fn creep(&self, count: usize, lag: f64) -> Result<(After, f64)> {
         let rate = |terms: &[CreepTerm]| {
-            let after = After::new(terms, lag);
+            let after = After::after(terms, lag)?;
             let error = self.rated(&after)?;
             Ok::<_, Error>((after, error))
         };

@@ -1,11 +1,12 @@
 //! Identifies the stages around the operators, together with the weights.
 //!
 //! `body` is the thermal body, `load` the shift by the load, `spacing` the place of the levels,
-//! `after` creep and lag. Each finds its constants and hands on recordings as the next stage sees
+//! `after` and `curve` those behind the operators. Each finds its constants and hands on recordings as the next stage sees
 //! them. `nelder_mead` is the search of the body.
 
 mod after;
 mod body;
+mod curve;
 mod load;
 mod nelder_mead;
 mod spacing;
@@ -15,7 +16,7 @@ pub(crate) use after::check_time;
 use crate::error::Result;
 use crate::identify::choose::{Open, Seen};
 use crate::identify::fixed::fit_weights_without;
-use crate::identify::options::{FitOptions, LoadLaw, Spacing};
+use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::model::{Found, Model, Outlier, Plane};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -88,7 +89,15 @@ pub(crate) fn fit(
         let (after, report) = after::find(&seen, &options, progress)?;
         notes.insert("after".to_owned(), json!(report));
         seen = Cow::Owned(after::before(&after, &seen)?);
-        found.after = after;
+        found.behind = after;
+    }
+    if options.curve != Choice::Fixed(0) && !loaded {
+        if let Some(bent) = curve::find(&seen, &options, progress)? {
+            notes.insert("curve".to_owned(), json!(bent.report));
+            seen = Cow::Owned(bent.recordings);
+            options = bent.options;
+            found.curve = Some(bent.bend);
+        }
     }
     let model = fit_weights_without(&seen, &options, asked.outliers, progress)?;
     let mut model = model.with_stages(found)?;

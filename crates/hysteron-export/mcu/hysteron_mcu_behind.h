@@ -1,0 +1,175 @@
+/* The stages behind the operators, which forward step and inverse share. Not for applications.
+ *
+ * Each follows its file in the core, operation by operation. `memory` and `factors` are those of
+ * the stage alone. At rest, at the first sample, nothing of a past is left: factors are zero. */
+#ifndef HYSTERON_MCU_BEHIND_H
+#define HYSTERON_MCU_BEHIND_H
+
+#include "hysteron_mcu_internal.h"
+#include "hysteron_mcu_stages.h"
+
+/* The stages by their numbers, and where their memory and factors begin. */
+enum { CURVE = 0, CREEP = 1, LAG = 2 };
+enum { CREEP_MEMORY = 0, LAG_MEMORY = 4 };
+enum { CREEP_FACTORS = 0, LAG_FACTORS = 4 };
+enum { MOST_CREEP = 4 };
+
+static inline int is_there(const hys_actuator *actuator, unsigned stage)
+{
+    return (actuator->there >> stage & 1u) != 0u;
+}
+
+/* The linear piece for x: between knots k and k + 1. Beyond the ends it is the outermost one. */
+static inline size_t piece(const hys_real *knots, size_t count, hys_real x)
+{
+    size_t low = 0u, high = count;
+    while (low < high) { /* at most log2(count) + 1 iterations */
+        size_t middle = low + (high - low) / 2u;
+        if (knots[middle] <= x) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    if (low == 0u) {
+        return 0u;
+    }
+    return low == count ? count - 2u : low - 1u;
+}
+
+/* The line between two knots. At a knot it is exact. */
+static inline hys_real line(hys_real x, hys_real x0, hys_real x1, hys_real y0, hys_real y1)
+{
+    hys_real slope;
+    if (x == x1) {
+        return y1;
+    }
+    slope = (y1 - y0) / (x1 - x0);
+    return y0 + (x - x0) * slope;
+}
+
+/* A line through knots at x. */
+static inline hys_real between(const hys_list *x, const hys_list *y, hys_real at)
+{
+    size_t k = piece(x->numbers, x->count, at);
+    return line(at, x->numbers[k], x->numbers[k + 1u], y->numbers[k], y->numbers[k + 1u]);
+}
+
+/* Creep: h and a share of each of its lags. */
+static inline hys_real creep_forward(const hys_actuator *actuator, hys_real *memory, int rests,
+                                     hys_real h)
+{
+    const hys_real *fade = actuator->factors + CREEP_FACTORS;
+    hys_real sum = h, *crept = memory + CREEP_MEMORY;
+    size_t k;
+    for (k = 0u; rests && k < MOST_CREEP; k++) {
+        crept[k] = h;
+    }
+    for (k = 0u; k < actuator->creep.count; k++) { /* at most MOST_CREEP iterations */
+        crept[k] = h + (crept[k] - h) * (rests ? ZERO : fade[k]);
+        sum = sum + actuator->creep.numbers[k] * crept[k];
+    }
+    return sum;
+}
+
+static inline hys_real creep_steepest(const hys_actuator *actuator, int rests)
+{
+    const hys_real *fade = actuator->factors + CREEP_FACTORS;
+    hys_real gain = ONE;
+    size_t k;
+    if (rests) {
+        return actuator->slopes[CREEP];
+    }
+    for (k = 0u; k < actuator->creep.count; k++) { /* at most MOST_CREEP iterations */
+        gain = gain + actuator->creep.numbers[k] * (ONE - fade[k]);
+    }
+    return gain;
+}
+
+static inline hys_real creep_inverse(const hys_actuator *actuator, const hys_real *memory,
+                                     int rests, hys_real sum)
+{
+    const hys_real *fade = actuator->factors + CREEP_FACTORS;
+    hys_real base = ZERO;
+    size_t k;
+    for (k = 0u; !rests && k < actuator->creep.count; k++) { /* at most MOST_CREEP iterations */
+        base = base + actuator->creep.numbers[k] * fade[k] * memory[CREEP_MEMORY + k];
+    }
+    return (sum - base) / creep_steepest(actuator, rests);
+}
+
+/* A lag of the whole. */
+static inline hys_real lag_forward(const hys_actuator *actuator, hys_real *memory, int rests,
+                                   hys_real sum)
+{
+    hys_real *lagged = memory + LAG_MEMORY;
+    *lagged = sum + ((rests ? sum : *lagged) - sum) * (rests ? ZERO : actuator->factors[LAG_FACTORS]);
+    return *lagged;
+}
+
+static inline hys_real lag_inverse(const hys_actuator *actuator, const hys_real *memory, int rests,
+                                   hys_real output)
+{
+    hys_real fade = actuator->factors[LAG_FACTORS];
+    return rests ? output : (output - memory[LAG_MEMORY] * fade) / (ONE - fade);
+}
+
+/* The output for the operators' sum. */
+static inline hys_real behind_forward(hys_actuator_state *state, hys_real x)
+{
+    const hys_actuator *actuator = state->actuator;
+    int rests = !state->started;
+    if (is_there(actuator, CURVE)) {
+        x = between(&actuator->curve_sums, &actuator->curve_outputs, x);
+    }
+    if (is_there(actuator, CREEP)) {
+        x = creep_forward(actuator, state->behind, rests, x);
+    }
+    if (is_there(actuator, LAG)) {
+        x = lag_forward(actuator, state->behind, rests, x);
+    }
+    return x;
+}
+
+/* The operators' sum for an output, from the last stage to the first. */
+static inline hys_real behind_inverse(const hys_actuator_state *state, hys_real y)
+{
+    const hys_actuator *actuator = state->actuator;
+    int rests = !state->started;
+    if (is_there(actuator, LAG)) {
+        y = lag_inverse(actuator, state->behind, rests, y);
+    }
+    if (is_there(actuator, CREEP)) {
+        y = creep_inverse(actuator, state->behind, rests, y);
+    }
+    if (is_there(actuator, CURVE)) {
+        y = between(&actuator->curve_outputs, &actuator->curve_sums, y);
+    }
+    return y;
+}
+
+/* The steepest slope of the output over the operators' sum in this sample. */
+static inline hys_real behind_steepest(const hys_actuator_state *state)
+{
+    const hys_actuator *actuator = state->actuator;
+    int rests = !state->started;
+    hys_real slope = is_there(actuator, CURVE) ? actuator->slopes[CURVE] : ONE;
+    if (is_there(actuator, CREEP)) {
+        slope = slope * creep_steepest(actuator, rests);
+    }
+    if (is_there(actuator, LAG) && !rests) {
+        slope = slope * (ONE - actuator->factors[LAG_FACTORS]);
+    }
+    return slope;
+}
+
+/* The output at rest, where the operators' sum has always been x. */
+static inline hys_real behind_settled(const hys_actuator *actuator, hys_real x)
+{
+    if (is_there(actuator, CURVE)) {
+        x = between(&actuator->curve_sums, &actuator->curve_outputs, x);
+    }
+    return is_there(actuator, CREEP) ? actuator->slopes[CREEP] * x : x;
+}
+
+#endif
