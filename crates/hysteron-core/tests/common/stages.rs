@@ -1,4 +1,5 @@
 //! Random stages around the operators.
+#![allow(clippy::panic)]
 
 use hysteron_core::{Plane, Real, Stages};
 use rand::RngExt;

@@ -145,7 +145,7 @@ impl Doubt {
             (*first, *last) = (*first + before, *last + before);
         };
         match &mut self {
-            Self::Frozen { rows, .. } => move_on(rows),
+            Self::Frozen { rows, .. } | Self::Gap { rows, .. } => move_on(rows),
             Self::Repeated { rows, of } => [rows, of].into_iter().for_each(move_on),
             Self::Disagree { rows, .. } => rows.iter_mut().for_each(move_on),
         }

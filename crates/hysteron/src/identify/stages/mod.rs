@@ -91,13 +91,14 @@ pub(crate) fn fit(
         seen = Cow::Owned(after::before(&after, &seen)?);
         found.behind = after;
     }
-    if options.curve != Choice::Fixed(0) && !loaded {
-        if let Some(bent) = curve::find(&seen, &options, progress)? {
-            notes.insert("curve".to_owned(), json!(bent.report));
-            seen = Cow::Owned(bent.recordings);
-            options = bent.options;
-            found.curve = Some(bent.bend);
-        }
+    if options.curve != Choice::Fixed(0)
+        && !loaded
+        && let Some(bent) = curve::find(&seen, &options, progress)?
+    {
+        notes.insert("curve".to_owned(), json!(bent.report));
+        seen = Cow::Owned(bent.recordings);
+        options = bent.options;
+        found.curve = Some(bent.bend);
     }
     let model = fit_weights_without(&seen, &options, asked.outliers, progress)?;
     let mut model = model.with_stages(found)?;
