@@ -8,7 +8,7 @@ use std::fs;
 
 /// All figures, by their stems. Each must be well-formed, without NaN or infinite numbers.
 fn figures(fixture: &Fixture) -> Vec<(&'static str, String)> {
-    let drawn = fixture.report(true, |report| drawn(report));
+    let drawn = fixture.report(true, drawn);
     for (stem, svg) in &drawn {
         let document = roxmltree::Document::parse(svg).unwrap();
         for node in document.descendants().flat_map(|node| node.attributes()) {
