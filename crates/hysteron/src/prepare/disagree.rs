@@ -26,12 +26,14 @@ const MOST: f64 = 0.4;
 /// Sets of rows without which the others are followed nearly as well, up to this factor, are told
 /// from each other by their size: the smallest is named.
 const NEARLY: f64 = 1.5;
-/// A change of unit explains rows if they then err at most as much as the others, and
+/// A change of unit explains rows if they then err at most so many times as much as the others, and
 /// by at most this share of what they did before. The others err at most by this share of the range:
 /// otherwise the model cannot follow the material.
 const EXPLAINED: f64 = 1.0;
 const LEFT: f64 = 0.1;
 const FOLLOWED: f64 = 0.02;
+/// There they move by at least this share of the usual range.
+const MOVES: f64 = 0.3;
 /// In a longer recording, rows are taken from which the shape of the loops can be seen.
 const ROWS: usize = 10_000;
 /// Blocks that disagree may have so many between them where they agree by chance.
@@ -164,6 +166,10 @@ fn explained(recording: &Recording, rows: &Range<usize>, without: f64) -> bool {
     let off = |recording: &Recording, affine: bool| -> Option<f64> {
         let model = from_kept(recording, |n| !rows.contains(&n))?;
         let (read, model) = (&recording.output[inner.clone()], &model[inner.clone()]);
+        // Where nothing moves, a line explains anything.
+        if usual_span(model) < MOVES * usual_span(&recording.output) {
+            return None;
+        }
         let (gain, offset) = if affine {
             line(model, read)?
         } else {

@@ -44,7 +44,8 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
         before.chain(after).fold(0.0, f64::max)
     };
     let jumps = |run: &Range<usize>, n: usize| {
-        (1..values.len()).contains(&n) && step(n) > STEP * nearby(run)
+        let near = nearby(run);
+        (1..values.len()).contains(&n) && near > 0.0 && step(n) > STEP * near
     };
     // A drive may rest at the end of its range, while what it moved goes back.
     let (low, high) = range(values);
@@ -57,10 +58,13 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
         })
     };
     let lost = |run: &Range<usize>| jumps(run, run.end) || is_left_behind(run);
-    let (held, rests): (Vec<_>, Vec<_>) = long.into_iter().partition(lost);
-    let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>() as f64;
+    let held: Vec<Range<usize>> = long.into_iter().filter(lost).collect();
+    // All samples that repeat the one before, also in short runs.
+    let equal = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    let count: usize = held.iter().map(Range::len).sum();
+    let rests = (equal + held.len() - count) as f64;
     let len = values.len() as f64;
-    if count(&rests) > RESTS * len || count(&held) > MOST * len {
+    if rests > RESTS * len || count as f64 > MOST * len {
         return Vec::new();
     }
     // The first reading of a run was right if the series came there by a usual step.
@@ -182,7 +186,7 @@ mod tests {
         let mut read = clean.clone();
         read[1015..1028].fill(clean[1014]);
         assert_eq!(held(&read, None), []);
-        let follower: Vec<f64> = (0..2000).map(f64::from).collect();
+        let follower: Vec<f64> = (0..2000).map(|n| f64::from(n % 100)).collect();
         assert_eq!(held(&read, Some(&follower)), [1015..1028]);
         // A drive that is off; steps; a coarse reading.
         let mut off = clean.clone();
