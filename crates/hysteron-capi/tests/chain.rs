@@ -1,6 +1,6 @@
 //! The whole signal path over the caller's memory: bit for bit what a state by handle gives, and
 //! without an allocation.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod own;
 mod whole;

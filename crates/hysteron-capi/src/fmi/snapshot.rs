@@ -178,7 +178,7 @@ impl Run {
         block
             .model
             .restore(&mut state.operators, &points, number(input))?;
-        state.stages = StageState::from_numbers(&stages.map(|word| f64::from_bits(word)))?;
+        state.stages = StageState::from_numbers(&stages.map(f64::from_bits))?;
         let run = Self {
             phase: *usize::try_from(*phase)
                 .ok()

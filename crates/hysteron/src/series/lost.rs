@@ -187,7 +187,11 @@ mod tests {
         read[1015..1028].fill(clean[1014]);
         assert_eq!(held(&read, None), []);
         let follower: Vec<f64> = (0..2000).map(|n| f64::from(n % 100)).collect();
-        assert_eq!(held(&read, Some(&follower)), [1015..1028]);
+        let expected = 1015..1028;
+        assert_eq!(
+            held(&read, Some(&follower)),
+            std::slice::from_ref(&expected)
+        );
         // A drive that is off; steps; a coarse reading.
         let mut off = clean.clone();
         off[1500..].fill(-40.0);
