@@ -206,9 +206,14 @@
 #define HYSTERON_PARTS 8
 
 /**
- * The largest number of creep terms.
+ * How many numbers the stages behind the operators remember.
  */
-#define HYSTERON_CREEP_TERMS 4
+#define HYSTERON_BEHIND 5
+
+/**
+ * Room for the constants of stages. There are fewer.
+ */
+#define HYSTERON_CONSTANTS 32
 
 /**
  * Operator: modified Krasnosel'skii-Pokrovskii, 0 to 1.
@@ -262,7 +267,7 @@
 
 /**
  * The model can give the target, but not in this sample: the input is at an end of its range, or
- * creep and lag are too slow. The input goes as far as it can.
+ * a stage is too slow. The input goes as far as it can.
  */
 #define HYSTERON_LIMITED 3
 
@@ -510,19 +515,34 @@ typedef struct HysteronShift {
 } HysteronShift;
 
 /**
+ * A constant of a stage: a list of numbers. The names, units and ranges are those of
+ * `docs/model.md`. Without a name it is ignored.
+ */
+typedef struct HysteronConstant {
+  /**
+   * Its name; null for none.
+   */
+  const char *name;
+  /**
+   * Its numbers; null for none.
+   */
+  const double *numbers;
+  /**
+   * How many there are. A stage whose constants have no numbers is not there.
+   */
+  size_t count;
+} HysteronConstant;
+
+/**
  * The constants of the stages around the operators. All zeros, and `sign` 1, is a model without
  * stages.
  *
  * ```text
  * T = body(drive)    x = W(a(load) T - s(load))    h = operators(x)
- * y = offset + o(load) + sign * lag(creep(g(load) h))
+ * y = offset + o(load) + sign * behind(g(load) h)
  * ```
  */
 typedef struct HysteronStages {
-  /**
-   * 1 for a thermal body, whose input is a drive; 0 for none.
-   */
-  int32_t body;
   /**
    * 1: the output rises with the operators' sum; −1: it falls.
    */
@@ -532,70 +552,9 @@ typedef struct HysteronStages {
    */
   double offset;
   /**
-   * Body: temperature at rest without a drive.
+   * The constants of all stages, in any order, each once.
    */
-  double ambient;
-  /**
-   * Body: temperature at rest per unit of the drive, above 0.
-   */
-  double gain;
-  /**
-   * Body: time constant of heating in seconds, above 0.
-   */
-  double tau_heating;
-  /**
-   * Body: time constant of cooling in seconds, above 0.
-   */
-  double tau_cooling;
-  /**
-   * Number of loads at which the curves are known; 0 without a load. Beyond the outermost loads
-   * the curves stay as they are there.
-   */
-  size_t load_count;
-  /**
-   * The loads, ascending.
-   */
-  const double *loads;
-  /**
-   * The shift `s` of the axis at each load, in the unit of the temperature. Null for 0.
-   */
-  const double *shifts;
-  /**
-   * The scale `a` of the axis at each load, above 0. Null for 1.
-   */
-  const double *scales;
-  /**
-   * The gain `g` at each load, above 0. Null for 1.
-   */
-  const double *gains;
-  /**
-   * The offset `o` at each load, in the output's unit. Null for 0.
-   */
-  const double *offsets;
-  /**
-   * Number of corners of the grid: `K + 1`, or 0 for levels at equal distances.
-   */
-  size_t spacing_count;
-  /**
-   * The temperatures at the corners, ascending, from level 0, the bottom of the plane, on.
-   */
-  const double *spacing;
-  /**
-   * Number of creep terms, up to `HYSTERON_CREEP_TERMS`.
-   */
-  size_t creep_count;
-  /**
-   * The share of the operators' sum that creeps, of each term, from 0.
-   */
-  const double *creep;
-  /**
-   * The time constant of each creep term in seconds, above 0.
-   */
-  const double *creep_taus;
-  /**
-   * Time constant of a lag of the whole in seconds; 0 for none.
-   */
-  double lag;
+  struct HysteronConstant constants[HYSTERON_CONSTANTS];
   /**
    * Number of parts of weights that depend on the load, up to `HYSTERON_PARTS`; 0 for weights
    * that do not. `offset` and the weights of the model have no effect then.
@@ -625,12 +584,12 @@ typedef struct HysteronStages {
 } HysteronStages;
 
 /**
- * What body, creep and lag remember from one sample to the next. All zeros: there was no sample
- * yet. A copy of it is a saved state.
+ * What the stages remember from one sample to the next. All zeros: there was no sample yet. A copy
+ * of it is a saved state.
  */
 typedef struct HysteronStageState {
   /**
-   * 1 after the first sample, 0 before it. Body, creep and lag are at rest with that sample.
+   * 1 after the first sample, 0 before it. The stages are at rest with that sample.
    */
   double started;
   /**
@@ -638,13 +597,9 @@ typedef struct HysteronStageState {
    */
   double temperature;
   /**
-   * The output of each creep term.
+   * What each stage behind the operators remembers.
    */
-  double creep[HYSTERON_CREEP_TERMS];
-  /**
-   * The sum of the operators after creep and lag.
-   */
-  double lagged;
+  double behind[HYSTERON_BEHIND];
 } HysteronStageState;
 
 /**
@@ -734,7 +689,7 @@ typedef struct HysteronModelInfo {
  */
 typedef struct HysteronModelNeeds {
   /**
-   * 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else
+   * 1 if the model depends on time, so that samples need `dt`; else
    * 0.
    */
   int32_t time;
@@ -1352,14 +1307,14 @@ int32_t hysteron_core_shift_freeze(struct HysteronCoreShift *shift, int32_t froz
 int32_t hysteron_shift_usual(uint64_t model, struct HysteronShiftOptions *options);
 
 /**
- * Saves what body, creep and lag remember. Together with `hysteron_state_save` it is the whole
+ * Saves what the stages remember. Together with `hysteron_state_save` it is the whole
  * state. A model without stages needs it not.
  */
 int32_t hysteron_state_save_stages(uint64_t state, struct HysteronStageState *stages);
 
 /**
  * Restores, bit for bit, what `hysteron_state_save_stages` gave. Call it after
- * `hysteron_state_restore`, which puts body, creep and lag at rest with the next sample.
+ * `hysteron_state_restore`, which puts the stages at rest with the next sample.
  */
 int32_t hysteron_state_restore_stages(uint64_t state, const struct HysteronStageState *stages);
 
@@ -1370,17 +1325,18 @@ int32_t hysteron_state_restore_stages(uint64_t state, const struct HysteronStage
 int32_t hysteron_state_temperature(uint64_t state, double *temperature);
 
 /**
- * Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The arrays are
- * those of the model: they end when it and its states are freed.
+ * Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The lists are
+ * those of the model: they end when it and its states are freed. Every constant has its name, also
+ * where it has no numbers.
  */
 int32_t hysteron_model_stages(uint64_t model, struct HysteronStages *stages);
 
 /**
  * Makes a state of `model`, as the fit found it before the first sample, or with all operators off
- * where it found none. Body, creep and lag are at rest with the first sample. `model` may be freed
+ * where it found none. The stages are at rest with the first sample. `model` may be freed
  * before the state.
  *
- * The model may have stages: a load, a thermal body, creep, a lag. Move the state by the functions
+ * The model may have stages. Move the state by the functions
  * whose names end with `_in`, which take time and load. The others refuse what they cannot know.
  */
 int32_t hysteron_state_new(uint64_t model, uint64_t *state);
@@ -1391,20 +1347,20 @@ int32_t hysteron_state_new(uint64_t model, uint64_t *state);
 int32_t hysteron_state_free(uint64_t state);
 
 /**
- * Switches all operators off, as at the bottom of the plane. Body, creep and lag are at rest with
- * the next sample.
+ * Switches all operators off, as at the bottom of the plane. The stages are at rest with the
+ * next sample.
  */
 int32_t hysteron_state_reset(uint64_t state);
 
 /**
  * Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
- * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the
+ * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). The stages are at rest with the
  * next sample.
  */
 int32_t hysteron_state_start(uint64_t state, int32_t start);
 
 /**
- * Switches all operators on, as at the top of the plane. Body, creep and lag are at rest with the
+ * Switches all operators on, as at the top of the plane. The stages are at rest with the
  * next sample.
  */
 int32_t hysteron_state_saturate(uint64_t state);
@@ -1467,7 +1423,7 @@ int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, siz
 
 /**
  * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
- * with the same plane. Body, creep and lag are at rest with the next sample, unless
+ * with the same plane. The stages are at rest with the next sample, unless
  * `hysteron_state_restore_stages` comes after it.
  */
 int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
