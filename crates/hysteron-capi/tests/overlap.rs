@@ -19,7 +19,7 @@ struct Arena<'a> {
 }
 
 /// Bytes before and after each argument: at least as many as any has.
-const GAP: usize = 1024;
+const GAP: usize = 2048;
 
 impl<'a> Arena<'a> {
     fn new(call: &'a Call, handles: &'a Handles) -> Self {

@@ -437,6 +437,10 @@ fn recordings_are_mended_where_that_is_asked_for() {
                 "hysteron: raw.csv: line 9 without a number: dropped",
                 "hysteron: raw.csv: line 403 at the time of the row before: kept",
                 "hysteron: raw.csv: line 402 after a gap of over three times the median time step",
+                "hysteron: raw.csv: line 402 after a gap in which the input may have turned: a \
+                 segment begins, with a history of its own",
+                "hysteron: raw.csv: 2 recordings of one experiment, line 2 to line 401, line 402 to \
+                 line 403",
             ]
         );
     }

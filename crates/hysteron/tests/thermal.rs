@@ -154,7 +154,7 @@ fn what_cannot_be_fitted_is_refused() {
             .run(std::slice::from_ref(recording));
         fitted.unwrap_err().to_string()
     };
-    assert!(fault(&recording).contains("depend on time"));
+    assert!(fault(&recording).contains("depends on time"));
     let still = Recording {
         time: Some(vec![3.0; 3]),
         ..recording
@@ -207,7 +207,7 @@ fn a_body_needs_time() {
         evaluate(&model, &recording)
             .unwrap_err()
             .to_string()
-            .contains("depend on time")
+            .contains("depends on time")
     );
     recording.time = Some(vec![0.0, 1.0, 5.0]);
     let evaluation = evaluate(&model, &recording).unwrap();
