@@ -1,8 +1,8 @@
 //! Creep: the output goes on moving after the operators have come to rest.
 
 use crate::scalar::Real;
-use crate::stages::behind::Stage;
 use crate::stages::constant::{Constant, Constants, Declared, Range, Unit};
+use crate::stages::stage::Stage;
 
 /// The largest number of creep terms.
 pub const MAX_CREEP: usize = 4;

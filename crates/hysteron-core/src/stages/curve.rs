@@ -2,8 +2,8 @@
 
 use crate::scalar::Real;
 use crate::stages::axis::between;
-use crate::stages::behind::Stage;
 use crate::stages::constant::{Constant, Constants, Declared, Range, Unit};
+use crate::stages::stage::Stage;
 
 /// A monotone curve, piecewise linear between knots. Beyond the outermost knots it goes on straight.
 ///

@@ -1,8 +1,8 @@
 //! Lag: the whole output follows with a time constant.
 
 use crate::scalar::Real;
-use crate::stages::behind::Stage;
 use crate::stages::constant::{Constant, Constants, Declared, Range, Unit, one};
+use crate::stages::stage::Stage;
 
 /// A first-order lag of the whole output.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -25,6 +25,7 @@ mod invert;
 mod lag;
 mod mix;
 mod parts;
+mod stage;
 
 pub use axis::{Axis, Load, Loaded};
 pub use behind::Behind;

@@ -14,6 +14,8 @@ pub(super) struct Found {
     pub(super) imports: BTreeSet<Place>,
     /// For each name that it re-exports, the path of it.
     pub(super) exports: BTreeMap<String, Place>,
+    /// The modules of it that only tests have.
+    pub(super) tests: Vec<Place>,
 }
 
 /// The paths in a file, whose module stands at `place`.
@@ -90,6 +92,9 @@ impl<'ast> Visit<'ast> for Paths<'_> {
         };
         if !attributes.iter().any(is_test) {
             visit::visit_item(self, item);
+        } else if let Item::Mod(module) = item {
+            let name = module.ident.to_string();
+            self.found.tests.push([self.place, &[name]].concat());
         }
     }
 

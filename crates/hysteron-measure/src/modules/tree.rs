@@ -19,6 +19,11 @@ impl Tree {
     pub(super) fn read(source: &Path) -> Result<Self> {
         let mut modules = BTreeMap::new();
         read_folder(source, &[], &mut modules)?;
+        let tests: Vec<Place> = modules
+            .values()
+            .flat_map(|found| found.tests.clone())
+            .collect();
+        modules.retain(|place, _| !tests.iter().any(|test| place.starts_with(test)));
         Ok(Tree(modules))
     }
 
