@@ -159,7 +159,10 @@ fn names_from_files_are_text_only(way: Way) {
         return;
     };
     let evil = "<img src=x onerror=window.hit=1>";
-    let text = format!("{evil},<b>b</b> [<i onmouseover=window.hit=1>]\n1,2\n2,3\n3,4\n2,2\n1,1\n");
+    let input = format!("temperature {evil}");
+    let text = format!(
+        "{input},displacement <b>b</b> [<i onmouseover=window.hit=1>]\n1,2\n2,3\n3,4\n2,2\n1,1\n"
+    );
     browser.drop_file(&tab, &format!("{evil}.csv"), &text);
     browser.wait(&tab, "document.querySelectorAll('.column').length === 2");
     browser.wait(
@@ -167,7 +170,7 @@ fn names_from_files_are_text_only(way: Way) {
         "document.querySelectorAll('#plot-loop .scatterlayer path').length > 0",
     );
     let shown = browser.value(&tab, "document.querySelector('.column strong').textContent");
-    assert_eq!(shown, evil);
+    assert_eq!(shown, input);
     let found = "document.querySelectorAll('main img, main b, main i, main [onmouseover], main [onerror]').length + (window.hit ?? 0)";
     assert_eq!(browser.value(&tab, found), 0.0);
     studio.end();
