@@ -285,7 +285,7 @@ fn cases(seed: u64, count: usize) -> Vec<Case> {
             let model = walks::model(&mut rng, operator, k);
             // Beside a large offset, `float` does not hold a small range: it is not exported.
             let (low, high) = model.output_range();
-            let is_held = high - low > 0.01 * low.abs().max(high.abs());
+            let is_held = high - low > 0.002 * low.abs().max(high.abs());
             if is_held && model.inverse().is_ok() {
                 break model;
             }
