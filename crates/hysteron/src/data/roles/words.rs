@@ -273,12 +273,19 @@ pub(super) fn may_mean(words: &[String], letter: Option<&str>) -> Vec<Quantity> 
             // One or two letters count only at the beginning: not `Weg in mm`.
             known.contains(&word) && (word.chars().count() > 2 || n == 0)
         });
-        let part = PART.iter().filter(|(_, known)| {
-            known
-                .iter()
-                .any(|known| word.starts_with(known) || word.ends_with(known))
-        });
-        found.extend(whole.chain(part).map(|(quantity, _)| *quantity));
+        found.extend(whole.map(|(quantity, _)| *quantity));
+        let each = PART.iter();
+        let each =
+            each.flat_map(|(quantity, all)| all.iter().map(move |known| (*quantity, *known)));
+        let parts = each.filter(|(_, known)| word.starts_with(known) || word.ends_with(known));
+        let parts: Vec<(Quantity, &str)> = parts.collect();
+        // `extension` is no `tension`.
+        let hidden = |known: &str| {
+            let mut others = parts.iter();
+            others.any(|(_, other)| *other != known && other.contains(known))
+        };
+        let whole_parts = parts.iter().filter(|(_, known)| !hidden(known));
+        found.extend(whole_parts.map(|(quantity, _)| *quantity));
     }
     if found.is_empty() {
         let known = LETTERS.iter().filter(|(known, _)| Some(*known) == letter);
