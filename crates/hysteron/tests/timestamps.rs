@@ -196,6 +196,14 @@ fn mixed_formats_are_read_or_their_row_is_named() {
         let at = rng.random_range(1..moments.len());
         let mut cells: Vec<String> = moments.iter().map(format).collect();
         cells[at] = another(&moments[at]);
+        // Seconds of two clocks that rise all the way are those of one clock that paused: nothing
+        // in the file tells them apart.
+        let numbers: Vec<f64> = cells.iter().flat_map(|cell| cell.parse()).collect();
+        if name.starts_with("seconds") && other.starts_with("seconds") && numbers.is_sorted() {
+            let found = read(&cells, Repair::Refuse).unwrap();
+            assert_eq!(found, numbers, "round {round}: {other} in {name}, row {at}");
+            continue;
+        }
         match read(&cells, Repair::Refuse) {
             Ok(found) => {
                 let told = format!("round {round}: {other} in {name}, row {at}: {cells:?}");

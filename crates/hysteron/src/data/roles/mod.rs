@@ -61,10 +61,10 @@ impl Candidate<'_> {
         self.may_be.contains(&quantity)
     }
 
-    /// How well it fits a role, as the best of what it may be. What rises evenly is a clock or a
-    /// counter, unless its name is that of an input: it is never an output.
+    /// How well it fits a role, as the best of what it may be. What rises evenly is a clock, a counter
+    /// or a slow input: it is never an output.
     fn score(&self, role: usize) -> i32 {
-        if self.series.rises_evenly && (role == OUTPUT || self.is_nameless()) {
+        if self.series.rises_evenly && role == OUTPUT {
             return 0;
         }
         let scores = self.may_be.iter().map(|quantity| quantity.scores()[role]);
@@ -97,27 +97,7 @@ pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Ro
     let [input, output, time, load] = known;
     let is_known = |n: &usize| known.contains(&Some(*n));
     let mut roles = Roles::default();
-    let mut named = |role: &str, n: usize, why: &str| {
-        let name = &all[n].name;
-        roles.reasons.push(format!("{role}: `{name}`, {why}"));
-        (*name).to_owned()
-    };
-
-    let time_at = time.or_else(|| clock(&all, is_known));
-    roles.time = time_at.map(|n| {
-        let why = match (time, all[n].series) {
-            (Some(_), _) => "as was said",
-            (None, Series { stamps: true, .. }) => "which has timestamps",
-            (
-                None,
-                Series {
-                    rises_evenly: true, ..
-                },
-            ) => "which rises evenly",
-            _ => "by its name",
-        };
-        named("time", n, why)
-    });
+    let mut time_at = time.or_else(|| clock(&all, is_known));
     let free = |n: &usize| {
         let Candidate { series, may_be, .. } = &all[*n];
         let roles = may_be.iter().any(|quantity| quantity.scores() != [0; 3]);
@@ -144,7 +124,34 @@ pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Ro
         places.dedup();
         places
     };
-    let (inputs, outputs) = (different(|pair| pair.0), different(|pair| pair.1));
+    let (mut inputs, outputs) = (different(|pair| pair.0), different(|pair| pair.1));
+    // A clock that only its even rise tells, and an input that nothing tells: either may be the other.
+    let is_guess = |n: &usize| !all[*n].series.stamps && !all[*n].is(Quantity::Time);
+    if let (Some(clock), [one], None, None) = (time_at.filter(is_guess), &inputs[..], time, input)
+        && all[*one].is(Quantity::Unknown)
+    {
+        inputs.push(clock);
+        time_at = None;
+    }
+    let mut named = |role: &str, n: usize, why: &str| {
+        let name = &all[n].name;
+        roles.reasons.push(format!("{role}: `{name}`, {why}"));
+        (*name).to_owned()
+    };
+    roles.time = time_at.map(|n| {
+        let why = match (time, all[n].series) {
+            (Some(_), _) => "as was said",
+            (None, Series { stamps: true, .. }) => "which has timestamps",
+            (
+                None,
+                Series {
+                    rises_evenly: true, ..
+                },
+            ) => "which rises evenly",
+            _ => "by its name",
+        };
+        named("time", n, why)
+    });
     let mut doubts = Vec::new();
     let mut settle = |role: &'static str, places: &[usize], given: Option<usize>| {
         let place = match places {
@@ -186,7 +193,7 @@ pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Ro
     roles
 }
 
-/// The column that is the time: by its timestamps, by its name, or because it rises evenly.
+/// The column that is the time: by its timestamps, by its name, or because it alone rises evenly.
 fn clock(all: &[Candidate<'_>], is_known: impl Fn(&usize) -> bool) -> Option<usize> {
     let rank = |n: &usize| {
         let candidate = &all[*n];
@@ -205,6 +212,12 @@ fn clock(all: &[Candidate<'_>], is_known: impl Fn(&usize) -> bool) -> Option<usi
         }
     };
     let ranked = (0..all.len()).filter(|n| !is_known(n));
-    let ranked = ranked.filter_map(|n| Some((rank(&n)?, n)));
-    ranked.min().map(|(_, n)| n)
+    let mut ranked: Vec<(i32, usize)> = ranked.filter_map(|n| Some((rank(&n)?, n))).collect();
+    ranked.sort_unstable();
+    match ranked[..] {
+        // Of a clock and a slow input without names, either may be the other.
+        [(2, _), (2, _), ..] => None,
+        [(_, n), ..] => Some(n),
+        [] => None,
+    }
 }

@@ -1,6 +1,6 @@
 //! What a column may measure, by its name and its unit together.
 
-use super::quantity::Quantity::{self, Temperature, Time, Unknown};
+use super::quantity::Quantity::{self, Counter, Temperature, Time, Unknown};
 use super::quantity::Series;
 use super::{units, words};
 use crate::recording;
@@ -52,8 +52,7 @@ impl Name {
         let both: Vec<Quantity> = said.iter().copied().filter(|q| unit.contains(q)).collect();
         if !both.is_empty() {
             said = both;
-        } else if said.is_empty() || said == [Time] && !unit.is_empty() && unit != [Time] {
-            // `t [°C]` is no time.
+        } else if said.is_empty() || !unit.is_empty() && self.counts(&said) {
             said = unit.to_vec();
         }
         // A single letter that goes back and forth is no time: `t` is a temperature then.
@@ -66,6 +65,12 @@ impl Name {
             said.push(Unknown);
         }
         said
+    }
+
+    /// Whether all that was `said` is a time, or a letter that counts: `t [°C]` is no time, and
+    /// `i [A]` no counter.
+    fn counts(&self, said: &[Quantity]) -> bool {
+        said == [Time] || said == [Counter] && self.letter.is_some()
     }
 }
 

@@ -13,7 +13,7 @@ const WHOLE: &[(Quantity, &[&str])] = &[
     (
         Counter,
         &[
-            "n", "nr", "no", "i", "id", "row", "step", "fila", "ligne", "zeile", "num",
+            "nr", "no", "id", "row", "step", "fila", "ligne", "zeile", "num",
         ],
     ),
     (
@@ -23,7 +23,7 @@ const WHOLE: &[(Quantity, &[&str])] = &[
             "noise", "flag", "code",
         ],
     ),
-    (Drive, &["in", "u", "pwm", "cmd"]),
+    (Drive, &["in", "pwm", "cmd"]),
     (Temperature, &["temp", "tc", "thermo"]),
     (Voltage, &["volt", "volts", "vin"]),
     (Current, &["amp", "amps", "strom"]),
@@ -237,6 +237,7 @@ const LETTERS: &[(&str, Quantity)] = &[
     ("T", Temperature),
     ("t", Time),
     ("U", Voltage),
+    ("u", Drive),
     ("V", Voltage),
     ("I", Current),
     ("H", Field),
@@ -254,23 +255,37 @@ const LETTERS: &[(&str, Quantity)] = &[
     ("i", Counter),
 ];
 
-const SENSORS: [&str; 4] = ["sensor", "capteur", "fühler", "transducer"];
+const SENSORS: [&str; 5] = ["sensor", "capteur", "fühler", "aufnehmer", "transducer"];
+
+/// A word without the sensor at its end: `wegsensor` says what `weg` says.
+fn sensed(word: &str) -> &str {
+    let bare = SENSORS.iter().find_map(|sensor| word.strip_suffix(sensor));
+    bare.filter(|bare| !bare.is_empty()).unwrap_or(word)
+}
 
 /// What a name may mean: all that its most telling words mean, or else the `letter` that it begins
-/// with, as it is written.
+/// with, as it is written: `I` is a current, and `i` a counter.
 pub(super) fn may_mean(words: &[String], letter: Option<&str>) -> Vec<Quantity> {
     let mut found = Vec::new();
     for (n, word) in words.iter().enumerate() {
+        let word = sensed(word);
         let whole = WHOLE.iter().filter(|(_, known)| {
             // One or two letters count only at the beginning: not `Weg in mm`.
-            known.contains(&word.as_str()) && (word.chars().count() > 2 || n == 0)
+            known.contains(&word) && (word.chars().count() > 2 || n == 0)
         });
-        let part = PART.iter().filter(|(_, known)| {
-            known
-                .iter()
-                .any(|known| word.starts_with(known) || word.ends_with(known))
-        });
-        found.extend(whole.chain(part).map(|(quantity, _)| *quantity));
+        found.extend(whole.map(|(quantity, _)| *quantity));
+        let each = PART.iter();
+        let each =
+            each.flat_map(|(quantity, all)| all.iter().map(move |known| (*quantity, *known)));
+        let parts = each.filter(|(_, known)| word.starts_with(known) || word.ends_with(known));
+        let parts: Vec<(Quantity, &str)> = parts.collect();
+        // `extension` is no `tension`.
+        let hidden = |known: &str| {
+            let mut others = parts.iter();
+            others.any(|(_, other)| *other != known && other.contains(known))
+        };
+        let whole_parts = parts.iter().filter(|(_, known)| !hidden(known));
+        found.extend(whole_parts.map(|(quantity, _)| *quantity));
     }
     if found.is_empty() {
         let known = LETTERS.iter().filter(|(known, _)| Some(*known) == letter);
