@@ -1261,8 +1261,10 @@ class Stuck(_Result):
     ----------
     channel : str
         'input' or 'output'.
-    start, end : int
-        The samples `start` to `end - 1`.
+    start : int
+        The first sample.
+    end : int
+        The sample after the last one.
     """
 
     channel: str

@@ -16,7 +16,8 @@ def noisy(swings, truth):
 def test_noise_and_spikes_go(noisy, swings):
     prepared, report = pyhysteron.prepare(noisy)
     assert report.spikes.input.first == (701,)
-    assert np.std(prepared.input - swings) < 0.5 * 0.05
+    # The spike is gone. Noise of 0.1 % of the range stays: no model gains by a filter.
+    assert np.max(np.abs(prepared.input - swings)) < 6 * 0.05
     assert report.samples == len(prepared) == len(noisy)
     assert report.rate_dependent is False
     assert report.input_noise == pytest.approx(0.05, rel=0.2)

@@ -197,7 +197,7 @@ impl Adaptive {
     /// --------
     /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.run([0.5, 1.0], [4.5, 7.0])['outcome']
-    /// array(['learned', 'learned'], dtype='<U11')
+    /// array(['learned', 'learned'], dtype='<U12')
     fn run<'py>(
         &self,
         py: Python<'py>,

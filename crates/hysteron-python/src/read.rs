@@ -113,7 +113,7 @@ pub(crate) fn read(
 ///
 /// Examples
 /// --------
-/// >>> import os, tempfile
+/// >>> import os, tempfile, warnings
 /// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
 /// >>> _ = open(path, 'w').write('t,T,lift\n0,20,0\n1,80,14\n2,20,1\n0,20,0\n1,50,3\n2,20,0\n')
 /// >>> with warnings.catch_warnings():
