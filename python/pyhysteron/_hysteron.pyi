@@ -71,6 +71,7 @@ __all__ = [
     "prior_of_fleet",
     "read",
     "read_fleet",
+    "read_segments",
     "remembered",
     "scenarios",
     "track",
@@ -87,16 +88,7 @@ _Path: TypeAlias = str | PathLike[str]
 _Range: TypeAlias = tuple[float, float]
 _Operator: TypeAlias = Literal["mkp", "kp", "relay"]
 _Heading: TypeAlias = Literal["rising", "falling"] | None
-_Outcome: TypeAlias = Literal[
-    "learned",
-    "waiting",
-    "at-rest",
-    "frozen",
-    "rolled-back",
-    "rejected",
-    "output-stuck",
-    "input-stuck",
-]
+_Outcome: TypeAlias = Literal["learned", "waiting", "at-rest", "frozen", "rolled-back", "rejected", "output-stuck", "input-stuck"]
 _Progress: TypeAlias = Callable[[str, float | None], object] | bool | None
 # Dates and durations are no ArrayLike for NumPy's stubs.
 _Times: TypeAlias = ArrayLike | Sequence[Any] | _Series
