@@ -172,7 +172,9 @@ fn a_payload_is_refused_or_stays_a_word() {
 #[test]
 fn absurd_requests_are_refused_before_they_start() {
     let mut session = Session::new(1 << 26);
-    let rows: String = (0..40).map(|n| format!("{n},{},{}\n", n % 9, n % 7)).collect();
+    let rows: String = (0..40)
+        .map(|n| format!("{n},{},{}\n", n % 9, n % 7))
+        .collect();
     let file = session
         .open("a.csv", format!("time [s],T,lift\n{rows}").into())
         .unwrap();

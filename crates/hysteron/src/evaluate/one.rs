@@ -15,8 +15,8 @@ use hysteron_core::Solution;
 const STILL: f64 = 2.0 * NOISE;
 
 /// Forward and inverse tests of a model on a recording, or on several. The series of the model are
-/// empty where only errors were asked for ([`evaluate_errors`]). Of several recordings they stand one
-/// after the other, and errors are over all samples.
+/// empty where only errors were asked for ([`crate::evaluate_errors`]). Of several recordings they
+/// stand one after the other, and errors are over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// Modelled output, one value per sample.

@@ -4,7 +4,7 @@ use super::path::{self, Measured};
 use super::{branch_polynomial, interpolation, line, mean_curve, persistence};
 use crate::error::Result;
 
-/// The kinds of [`Rival`].
+/// The kinds of [`Rival`](crate::Rival).
 ///
 /// | kind | what it predicts |
 /// | --- | --- |
