@@ -12,6 +12,7 @@ a Markdown table.
 
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -143,7 +144,14 @@ def stages(folder):
 
 
 def every_stage(folder, parts):
-    weights = parts[0]["weights"]
+    # The file's own weights and offset are those in the middle of the load: Bernstein polynomials.
+    degree = len(parts) - 1
+    middle = [math.comb(degree, k) / 2**degree for k in range(degree + 1)]
+    weights = [
+        sum(b * mu for b, mu in zip(middle, each))
+        for each in zip(*(part["weights"] for part in parts))
+    ]
+    offset = sum(b * part["offset"] for b, part in zip(middle, parts))
     curves = {"loads": [0, 200], "shifts": [0, 8], "gains": [1, 1.2], "offsets": [0, 0.3]}
     model = folder / "every.json"
     model.write_text(
@@ -154,7 +162,7 @@ def every_stage(folder, parts):
                 "operator": "mkp",
                 "plane": {"min": 1, "max": 3, "levels": 3},
                 "input": {"name": "duty"},
-                "output": {"name": "stroke", "offset": 3.5, "sign": -1},
+                "output": {"name": "stroke", "offset": offset, "sign": -1},
                 "weights": weights,
                 "thermal": {
                     "kind": "first-order",
