@@ -364,10 +364,11 @@ mod tests {
     #[test]
     fn a_fault_with_the_right_checksum_is_named() {
         let cases = [
-            (1, "hysteron-fmu 5", "`hysteron-fmu 5` where"),
-            (1, "hysteron-fmu 4", "`first` is expected"),
+            (1, "hysteron-fmu 6", "`hysteron-fmu 6` where"),
             (1, "hysteron-fmu 2", "`first` is expected"),
             (1, "hysteron-fmu 3", "`first` is expected"),
+            (1, "hysteron-fmu 4", "`first` is expected"),
+            (1, "hysteron-fmu 5", "`first` is expected"),
             (2, "block sideways", "no block"),
             (2, "block", "`block` and 1 value"),
             (4, "operator", "`operator` and 1 value"),
