@@ -37,7 +37,7 @@ fn build() -> Option<PathBuf> {
     let built = built.unwrap();
     assert!(built.status.success(), "the session cannot be built");
     let session = String::from_utf8(built.stdout).unwrap();
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}-page", crate::NAME));
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("studio-page");
     std::fs::create_dir_all(&target).unwrap();
     for file in static_page() {
         std::fs::write(target.join(file.name), file.text.as_bytes()).unwrap();

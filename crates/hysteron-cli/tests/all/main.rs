@@ -1,0 +1,26 @@
+//! The tests of this crate: one program, since every program is linked with all dependencies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod adapt;
+mod command;
+mod design;
+mod export;
+mod export_fmu;
+mod fleet;
+mod hold_out;
+mod identification;
+mod interrupted;
+mod messages;
+mod options;
+mod prepare;
+mod readers;
+mod replacing;
+mod segments;
+mod shell;
+mod start;
+mod studio;
+mod thermal;
+mod track;

@@ -1,0 +1,15 @@
+//! The tests of this crate: one program, since every program is linked with all dependencies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod adapt;
+mod c;
+mod files;
+mod fmu;
+mod page;
+mod rounding;
+mod staged;
+mod vectors;
+mod vectors_staged;

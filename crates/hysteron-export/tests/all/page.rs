@@ -1,0 +1,99 @@
+//! The program of the page on microcontrollers, word for word.
+
+use crate::common::programs::{has, page, run};
+use crate::common::{STRICT, here};
+use hysteron::{FirstOrder, Model};
+use hysteron_export::{COptions, CReal, CSampling, c, c_sampled};
+use std::process::Command;
+
+#[test]
+fn the_page_on_microcontrollers() {
+    let (text, program) = page("microcontroller.md");
+    // Wherever its lines are wrapped.
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let folder = tempfile::tempdir().unwrap();
+    let vector = std::fs::read_to_string(here("../../vectors/inverse-mkp-20.json")).unwrap();
+    let vector: serde_json::Value = serde_json::from_str(&vector).unwrap();
+    let model = Model::from_json(&vector["model"].to_string()).unwrap();
+    let options = COptions {
+        real: CReal::Float,
+        name: None,
+        source: std::path::Path::new("spring.json"),
+        adaptation: false,
+    };
+    let memory = c(&model, folder.path(), &options).unwrap().memory;
+    for figure in [
+        format!(
+            "With 20 levels in `float` the constants take {} bytes",
+            memory.constants
+        ),
+        format!("takes {} bytes of RAM", memory.state + memory.turns),
+    ] {
+        assert!(text.contains(&figure), "{figure}");
+    }
+    if !has("cc") {
+        return;
+    }
+    std::fs::write(folder.path().join("main.c"), program).unwrap();
+    let sources = [
+        "main.c",
+        "spring.c",
+        "hysteron_mcu.c",
+        "hysteron_mcu_inverse.c",
+    ];
+    run(Command::new("cc")
+        .args(STRICT)
+        .arg("-Wdouble-promotion")
+        .args(sources)
+        .args(["-o", "main"])
+        .current_dir(folder.path()));
+    run(Command::new("./main").current_dir(folder.path()));
+}
+
+/// The second program, of an actuator with stages.
+#[test]
+fn the_actuator_on_the_page() {
+    if !has("cc") {
+        return;
+    }
+    let page = std::fs::read_to_string(here("../../docs/microcontroller.md")).unwrap();
+    let program = page.split("```c\n").nth(2).unwrap();
+    let program = program.split("```").next().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let vector = std::fs::read_to_string(here("../../vectors/inverse-mkp-20.json")).unwrap();
+    let vector: serde_json::Value = serde_json::from_str(&vector).unwrap();
+    let mut model = Model::from_json(&vector["model"].to_string()).unwrap();
+    model.thermal = Some(FirstOrder {
+        gain: 100.0,
+        tau_heating: 1.0,
+        tau_cooling: 2.0,
+        ..FirstOrder::default()
+    });
+    let options = COptions {
+        real: CReal::Float,
+        name: None,
+        source: std::path::Path::new("wire.json"),
+        adaptation: false,
+    };
+    let sampling = CSampling {
+        dt: Some(0.01),
+        drive: Some((0.0, 1.0)),
+    };
+    c_sampled(&model, folder.path(), &options, &sampling).unwrap();
+    std::fs::write(folder.path().join("main.c"), program).unwrap();
+    let sources = [
+        "main.c",
+        "wire.c",
+        "hysteron_mcu.c",
+        "hysteron_mcu_inverse.c",
+        "hysteron_mcu_stages.c",
+        "hysteron_mcu_stages_inverse.c",
+    ];
+    run(Command::new("cc")
+        .args(STRICT)
+        .arg("-Wdouble-promotion")
+        .args(sources)
+        .args(["-o", "main"])
+        .current_dir(folder.path()));
+    run(Command::new("./main").current_dir(folder.path()));
+}

@@ -1,0 +1,14 @@
+//! The tests of this crate: one program, since every program is linked with all dependencies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../loops/mod.rs"]
+mod loops;
+
+mod comparison;
+mod control;
+mod faults;
+mod rig;
+mod sensor_lag;
+mod threads;
+mod track;
+mod wire;

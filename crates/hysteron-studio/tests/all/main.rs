@@ -1,0 +1,26 @@
+//! The tests of this crate: one program, since every program is linked with all dependencies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[cfg(feature = "server")]
+#[path = "../common/chromium.rs"]
+mod chromium;
+#[cfg(feature = "server")]
+#[path = "../common/mod.rs"]
+mod common;
+#[cfg(feature = "server")]
+#[path = "../common/folder.rs"]
+mod folder;
+#[cfg(feature = "server")]
+#[path = "../common/place.rs"]
+mod place;
+#[cfg(feature = "server")]
+#[path = "../../../hysteron/tests/common/mod.rs"]
+mod recordings;
+
+mod browser;
+mod browser_views;
+mod carried;
+mod hostile_sessions;
+mod server;
+mod session;
+mod views;

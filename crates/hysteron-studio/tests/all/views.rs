@@ -1,0 +1,306 @@
+//! What the views of the session show: parts of the loop, samples, preparations, paths, profiles.
+
+use hysteron_studio::{Fault, Id, Response, Session};
+use serde_json::{Value, json};
+
+/// A play of 4 degC with loops that shrink, a spike, and noise.
+fn table(noise: f64) -> String {
+    let mut text = "time [s],temperature [degC],displacement [mm]\n".to_owned();
+    let (mut y, mut seed) = (20.0_f64, 1_u64);
+    for n in 0..600 {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let random = (seed >> 40) as f64 / f64::from(1 << 24) - 0.5;
+        let t = 50.0 - 30.0 * (f64::from(n) * 0.05).cos() * (1.0 - f64::from(n) / 900.0);
+        y = y.clamp(t - 2.0, t + 2.0);
+        let read = if noise > 0.0 && n == 300 {
+            400.0
+        } else {
+            t + noise * random
+        };
+        text += &format!(
+            "{},{read},{}\n",
+            f64::from(n) * 0.1,
+            0.2 * y + 0.1 * noise * random
+        );
+    }
+    text
+}
+
+fn ask(session: &mut Session, request: Value) -> Result<Value, Fault> {
+    let answer = session.handle(serde_json::from_value(request).unwrap())?;
+    if let Some(job) = answer.job {
+        return Ok(json!(session.finish(job.run())?));
+    }
+    if let Response::Taken(taken) = answer.response {
+        return Ok(json!({ "bytes": taken.bytes }));
+    }
+    Ok(serde_json::to_value(answer.response).unwrap())
+}
+
+fn fitted(noise: f64) -> (Session, Id, Id) {
+    let mut session = Session::new(1 << 28);
+    let file = session.open("run.csv", table(noise).into()).unwrap();
+    let options = json!({"levels": "12", "bootstrap": "0", "smooth": "off"});
+    let fit = ask(&mut session, json!({"request": "fit", "options": options})).unwrap();
+    let fit = fit.as_u64().unwrap();
+    (session, file, fit)
+}
+
+#[test]
+fn a_part_of_the_loop_is_the_same_samples_in_every_picture() {
+    let (mut session, file, fit) = fitted(0.0);
+    let view = |picture: &str| {
+        json!({"request": "curves", "file": file, "fits": [fit], "picture": picture,
+            "area": {"input": [30.0, 45.0], "output": [5.0, 8.0]}, "pixels": [600, 400]})
+    };
+    let mut counts = Vec::new();
+    for picture in [
+        "input",
+        "output",
+        "loop",
+        "residuals",
+        "residuals_over_input",
+        "histogram",
+    ] {
+        let seen = ask(&mut session, view(picture)).unwrap();
+        counts.push(seen["samples"].as_u64().unwrap());
+        assert!(seen["span"][0].as_f64().unwrap() > 0.0, "{picture}");
+    }
+    assert!(counts[0] > 20 && counts[0] < 400 && counts.iter().all(|n| *n == counts[0]));
+    // Over time there are gaps, and what is shown is inside but for the ends of lines.
+    let seen = ask(&mut session, view("input")).unwrap();
+    let inputs = seen["lines"][0]["y"].as_array().unwrap();
+    assert!(inputs.iter().any(Value::is_null));
+    // The input moves by at most 1.5 from sample to sample.
+    let inside = |u: &Value| u.as_f64().is_none_or(|u| (28.4..46.6).contains(&u));
+    assert!(inputs.iter().all(inside));
+    // Whole samples, as a table: none beside the part.
+    let mut take = view("output");
+    (take["request"], take["what"]) = (json!("take"), json!("table"));
+    let bytes = ask(&mut session, take.clone()).unwrap();
+    let bytes: Vec<u8> = serde_json::from_value(bytes["bytes"].clone()).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert!(rows.len() > 20 && rows.len() as u64 <= counts[0]);
+    for row in &rows {
+        assert!((30.0..=45.0).contains(&row[1]) && (5.0..=8.0).contains(&row[2]));
+        assert_eq!(row[2] - row[3], row[4]);
+    }
+    take["what"] = json!("parquet");
+    let bytes = ask(&mut session, take).unwrap();
+    let bytes: Vec<u8> = serde_json::from_value(bytes["bytes"].clone()).unwrap();
+    let mut again = Session::new(1 << 28);
+    let file = again.open("samples.parquet", bytes).unwrap();
+    let roles = json!({"input": "temperature [degC]", "output": "displacement [mm]"});
+    let seen = ask(
+        &mut again,
+        json!({"request": "columns", "file": file, "roles": roles}),
+    );
+    assert_eq!(seen.unwrap()["files"][0]["samples"], rows.len());
+}
+
+#[test]
+fn a_play_through_the_time_shows_what_a_jump_shows() {
+    let (mut session, file, fit) = fitted(0.0);
+    let plane =
+        |at: f64| json!({"request": "plane", "fit": fit, "kind": "states", "at": [file, at]});
+    for at in [3.0, 3.1, 20.0, 59.9, 7.0] {
+        let gone_on = ask(&mut session, plane(at)).unwrap();
+        ask(&mut session, plane(0.0)).unwrap();
+        let jumped = ask(&mut session, plane(at)).unwrap();
+        assert_eq!(gone_on, jumped, "at {at}");
+        let stairs: Vec<[f64; 2]> = serde_json::from_value(gone_on["staircase"].clone()).unwrap();
+        // From the edge to the diagonal, never left nor up.
+        assert_eq!(stairs[0][0], 0.0);
+        let [a, b] = *stairs.last().unwrap();
+        assert_eq!(a, b);
+        for step in stairs.windows(2) {
+            assert!(
+                step[1][0] >= step[0][0] && step[1][1] <= step[0][1],
+                "{stairs:?}"
+            );
+        }
+        // Cells wholly below the line are on, and cells wholly above it are off.
+        let height = |alpha: f64| {
+            let beyond = stairs.iter().filter(|point| point[0] <= alpha);
+            beyond.map(|point| point[1]).fold(f64::INFINITY, f64::min)
+        };
+        let rows = gone_on["values"].as_array().unwrap();
+        for (j, row) in rows.iter().enumerate() {
+            for (i, state) in row.as_array().unwrap().iter().enumerate() {
+                let Some(state) = state.as_f64() else {
+                    continue;
+                };
+                let (left, top) = (i as f64, (j + 1) as f64);
+                if height(left + 1.0) >= top && left + 1.0 <= a {
+                    assert_eq!(state, 1.0, "cell {i} {j} of {stairs:?}");
+                }
+                if height(left) <= top - 1.0 {
+                    assert_eq!(state, 0.0, "cell {i} {j} of {stairs:?}");
+                }
+            }
+        }
+        let sample = json!({"request": "sample", "file": file, "fits": [fit], "at": at});
+        let sample = ask(&mut session, sample).unwrap();
+        assert_eq!(sample["row"], gone_on["sample"]["row"]);
+    }
+}
+
+#[test]
+fn a_prepared_file_is_fitted_and_its_raw_line_stays() {
+    let (mut session, file, _) = fitted(0.6);
+    let view = json!({"request": "curves", "file": file, "picture": "input", "raw": true,
+        "pixels": [600, 400]});
+    let seen = ask(&mut session, view.clone()).unwrap();
+    assert_eq!(seen["lines"].as_array().unwrap().len(), 1);
+    let refused = json!({"request": "prepare", "file": file, "steps": {"spikes": "many"}});
+    assert_eq!(ask(&mut session, refused).unwrap_err().code, 102);
+    let steps = json!({"request": "prepare", "file": file, "steps": {"resample": "off"}});
+    let done = ask(&mut session, steps).unwrap();
+    let report = &done["files"][0]["preparation"][0];
+    assert_eq!(report["spikes"]["input"]["first"], json!([301]));
+    // Noise of 0.6 evenly over an interval of 1 has this deviation; a quarter is for its estimate.
+    let noise = report["input_noise"].as_f64().unwrap();
+    assert!(
+        (noise / (0.6 / 12.0_f64.sqrt()) - 1.0).abs() < 0.25,
+        "{noise}"
+    );
+    let seen = ask(&mut session, view).unwrap();
+    let most = |line: &Value| {
+        let values = line["y"].as_array().unwrap().iter();
+        values.filter_map(Value::as_f64).fold(0.0, f64::max)
+    };
+    assert_eq!(seen["lines"][0]["raw"], true);
+    assert!(most(&seen["lines"][0]) == 400.0 && most(&seen["lines"][1]) < 100.0);
+    let options = json!({"levels": "8", "bootstrap": "0"});
+    let fit = ask(&mut session, json!({"request": "fit", "options": options})).unwrap();
+    for (what, part) in [
+        ("command", "--prepare --resample off"),
+        ("python", "pyhysteron.prepare(pyhysteron.read(\"run.csv\""),
+        (
+            "rust",
+            "PrepareOptions { resample: Step::Off, ..PrepareOptions::default() }",
+        ),
+    ] {
+        let taken = json!({"request": "take", "what": what, "fit": fit});
+        let bytes = ask(&mut session, taken).unwrap()["bytes"].clone();
+        let text = String::from_utf8(serde_json::from_value(bytes).unwrap()).unwrap();
+        assert!(text.contains(part), "{text}");
+    }
+    let saved = ask(&mut session, json!({"request": "take", "what": "session"})).unwrap();
+    let mut again = Session::new(1 << 28);
+    again
+        .open(
+            "s.json",
+            serde_json::from_value(saved["bytes"].clone()).unwrap(),
+        )
+        .unwrap();
+    let same = ask(&mut again, json!({"request": "overview"})).unwrap();
+    assert_eq!(same["files"][0]["preparation"], json!([report]));
+    let raw = json!({"request": "prepare", "file": file});
+    assert!(ask(&mut session, raw).unwrap()["files"][0]["preparation"] == json!([]));
+}
+
+#[test]
+fn a_repair_is_told_before_it_is_made() {
+    let mut session = Session::new(1 << 24);
+    session
+        .open("gaps.csv", "u,y\n1,2\n2,x\n3,4\n2,3\n".into())
+        .unwrap();
+    let seen = ask(&mut session, json!({"request": "overview"})).unwrap();
+    let repair = &seen["files"][0]["repair"];
+    assert_eq!(repair["samples"], 3);
+    assert!(
+        repair["notes"][0].as_str().unwrap().contains("line 3"),
+        "{repair}"
+    );
+}
+
+#[test]
+fn a_path_leads_where_its_samples_lead_and_policies_go_side_by_side() {
+    let (mut session, ..) = fitted(0.0);
+    // Levels as far apart as the play is wide, so that there is a dead band.
+    let options = json!({"levels": "15", "bootstrap": "0"});
+    let fit = ask(&mut session, json!({"request": "fit", "options": options})).unwrap();
+    let mut start = || ask(&mut session, json!({"request": "drive", "fit": fit})).unwrap();
+    let (one, two) = (start(), start());
+    let path = [35.0, 60.0, 41.0, 52.0, 30.0];
+    let whole = json!({"request": "pull", "drive": one["drive"], "inputs": path});
+    let whole = ask(&mut session, whole).unwrap();
+    let mut last = Value::Null;
+    for input in path {
+        let pull = json!({"request": "pull", "drive": two["drive"], "input": input});
+        last = ask(&mut session, pull).unwrap();
+    }
+    assert_eq!(whole["trail"], last["trail"]);
+    // A rest at the turn, and down: both policies give the outputs.
+    let up = json!({"request": "pull", "drive": one["drive"], "input": 60.0});
+    let top = ask(&mut session, up).unwrap()["output"].as_f64().unwrap();
+    let outputs: Vec<f64> = (-2..10_i32)
+        .map(|n| top - 0.2 * f64::from(n.max(0)))
+        .collect();
+    let pull = json!({"request": "pull", "drive": one["drive"], "outputs": outputs});
+    let seen = ask(&mut session, pull).unwrap();
+    assert_eq!(
+        (&seen["status"], &seen["rival"]["status"]),
+        (&json!("ok"), &json!("ok"))
+    );
+    assert_eq!(seen["rival"]["policy"], "anticipate");
+    for end in [&seen["output"], &seen["rival"]["output"]] {
+        // The inverse is exact up to rounding.
+        assert!((end.as_f64().unwrap() - outputs.last().unwrap()).abs() < 1e-9);
+    }
+    let moves: Vec<[f64; 3]> = serde_json::from_value(seen["moves"].clone()).unwrap();
+    assert_eq!(moves.iter().map(|m| m[0]).collect::<Vec<_>>(), outputs);
+    // While the target rests one holds its input; the other has crossed the dead band.
+    let [_, hold, anticipate] = moves[1];
+    assert!(
+        (hold - 60.0).abs() < 1e-9 && anticipate < hold - 1.0,
+        "{moves:?}"
+    );
+    for [_, hold, anticipate] in moves.iter().skip(3) {
+        assert!((hold - anticipate).abs() < 1e-6, "{moves:?}");
+    }
+    // A path that is refused at its middle moves nothing.
+    let bad = json!({"request": "pull", "drive": one["drive"], "inputs": []});
+    assert_eq!(ask(&mut session, bad).unwrap_err().code, 102);
+    let back = json!({"request": "pull", "drive": one["drive"], "input": 30.0});
+    let back = ask(&mut session, back).unwrap();
+    assert!(back["rival"].is_null() && back["moves"] == json!([]));
+}
+
+#[test]
+fn a_profile_determines_what_the_recordings_do_not() {
+    let (mut session, _, fit) = fitted(0.0);
+    let wish = json!({"request": "design", "fit": fit, "heating": 2.0, "cooling": 1.0});
+    let seen = ask(&mut session, wish.clone()).unwrap();
+    let counts = |of: &str| serde_json::from_value::<[u64; 4]>(seen[of].clone()).unwrap();
+    let (before, after) = (counts("counts_before"), counts("counts_after"));
+    assert!(before[3] < 78, "{before:?}");
+    assert_eq!(after, [0, 0, 0, 78]);
+    let take = json!({"request": "take", "what": "profile", "fit": fit, "heating": 2.0,
+        "cooling": 1.0});
+    let taken = ask(&mut session, take).unwrap()["bytes"].clone();
+    let text = String::from_utf8(serde_json::from_value(taken).unwrap()).unwrap();
+    assert!(text.starts_with("time [s],input\n"));
+    assert_eq!(
+        text.lines().count() as u64 - 1,
+        seen["samples"].as_u64().unwrap()
+    );
+    let command = seen["command"].as_str().unwrap();
+    for part in [
+        "--levels 12",
+        "--heating-rate 2",
+        "--from run.csv",
+        "--input 'temperature [degC]'",
+    ] {
+        assert!(command.contains(part), "{command}");
+    }
+    let mut wrong = wish;
+    wrong["heating"] = json!(-1.0);
+    assert!(ask(&mut session, wrong).is_err());
+}

@@ -1,0 +1,205 @@
+//! A channel that freezes while a model learns: the model that is left is one from before, and the
+//! row is found. Recordings without a fault raise no alarm.
+
+use crate::common::shared;
+use hysteron::{
+    AdaptOptions, Channel, Columns, Fit, FitOptions, Learner, Model, Operator, Plane, Progress,
+    Recording, Sign, adapt,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const LEARNERS: [Learner; 5] = [
+    Learner::Refit,
+    Learner::Increments,
+    Learner::LeastSquares,
+    Learner::Drift,
+    Learner::Load,
+];
+
+/// A ridge of weights along the diagonal, of random place and width, as of an actuator.
+fn actuator(rng: &mut ChaCha8Rng, stroke: f64) -> Model {
+    let levels = rng.random_range(8..16);
+    let (middle, lag) = (rng.random_range(0.4..0.6), rng.random_range(0.1..0.3));
+    let at = |n: usize| n as f64 / levels as f64;
+    let weight = |(i, j): (usize, usize)| {
+        let off = (at(j) - middle - lag / 2.0).powi(2) + (at(i) - middle + lag / 2.0).powi(2);
+        (-60.0 * off).exp()
+    };
+    let mut weights: Vec<f64> = hysteron::operators(levels).map(weight).collect();
+    let total: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|mu| *mu *= stroke / total);
+    let plane = Plane::new(20.0, 80.0, levels).unwrap();
+    Model::new(Operator::Mkp, plane, weights, 5.0, Sign::Negative).unwrap()
+}
+
+/// Loops of two sizes, of a plant that is somewhat larger than its model, and drifts.
+fn recorded(rng: &mut ChaCha8Rng, model: &Model, noise: f64) -> Recording {
+    let samples = f64::from(rng.random_range(100..300));
+    let wave = |n: i32| {
+        let turn = f64::from(n) / samples;
+        48.0 - (26.0 + 6.0 * (0.31 * turn).cos()) * (std::f64::consts::TAU * turn).cos()
+    };
+    let input: Vec<f64> = (0..3000).map(wave).collect();
+    let mut output = model.simulate(&input).unwrap();
+    let drift = rng.random_range(-1.0..1.0);
+    for (n, y) in output.iter_mut().enumerate() {
+        *y = 1.2 * *y + drift * n as f64 / 1000.0 + noise * rng.random_range(-1.0..1.0);
+    }
+    Recording::new(input, output).unwrap()
+}
+
+fn by(learner: Learner) -> AdaptOptions {
+    AdaptOptions {
+        learner,
+        ..AdaptOptions::default()
+    }
+}
+
+/// What the learner has learned before each of the first samples.
+fn before(model: &Model, recording: &Recording, learner: Learner, count: usize) -> Vec<Model> {
+    let (options, mut kept) = (by(learner), Vec::new());
+    let samples = recording.input.iter().zip(&recording.output).take(count);
+    if learner == Learner::Load {
+        let resolved = options.resolve(model, recording).unwrap();
+        let hysteron::EstimatorOptions::Shift(resolved) = resolved else {
+            unreachable!()
+        };
+        let mut adaptive = hysteron::AdaptiveLoad::new(model, None, resolved).unwrap();
+        for (&x, &y) in samples {
+            kept.push(adaptive.model().unwrap());
+            adaptive.step(x, y).unwrap();
+        }
+    } else {
+        let mut adaptive = options.adaptive_after(model, recording).unwrap();
+        for (&x, &y) in samples {
+            kept.push(adaptive.model().unwrap());
+            adaptive.step(x, y).unwrap();
+        }
+    }
+    kept
+}
+
+#[test]
+fn the_model_after_a_freeze_is_one_from_before_it() {
+    for seed in 0..60 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let learner = LEARNERS[seed as usize % LEARNERS.len()];
+        let model = actuator(&mut rng, 11.3);
+        let noise = [0.0, 0.01, 0.1][rng.random_range(0..3)];
+        let mut recording = recorded(&mut rng, &model, noise);
+        let frozen = rng.random_range(800..1900);
+        let held = [recording.output[frozen], 0.0, -3.0][rng.random_range(0..3)];
+        for y in &mut recording.output[frozen..] {
+            *y = held + noise * rng.random_range(-1.0..1.0);
+        }
+        let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
+        let what = format!("{seed} {learner:?}: {:?}", adapted.stuck);
+        let [stuck] = &adapted.stuck[..] else {
+            panic!("{what}")
+        };
+        assert_eq!(stuck.channel, Channel::Output, "{what}");
+        // Noise may hide some rows in which the output hardly moved before it froze.
+        let off = stuck.samples.start.abs_diff(frozen);
+        assert!(off <= if noise == 0.0 { 2 } else { 60 }, "{what}, {frozen}");
+        let kept = before(&model, &recording, learner, frozen + 1);
+        let same = |kept: &Model| {
+            kept.weights() == adapted.model.weights()
+                && kept.offset() == adapted.model.offset()
+                && kept.plane() == adapted.model.plane()
+        };
+        assert!(kept.iter().any(same), "{what}");
+    }
+}
+
+#[test]
+fn a_plant_that_changes_is_not_frozen() {
+    for seed in 0..60 {
+        let mut rng = ChaCha8Rng::seed_from_u64(100 + seed);
+        let learner = LEARNERS[seed as usize % LEARNERS.len()];
+        let model = actuator(&mut rng, 11.3);
+        let mut recording = recorded(&mut rng, &model, 0.05);
+        let (offset, gain) = (rng.random_range(-20.0..20.0), rng.random_range(0.5..3.0));
+        let at = rng.random_range(0..3000);
+        for (n, y) in recording.output.iter_mut().enumerate() {
+            let share = match seed % 2 {
+                0 => f64::from(n >= at),
+                _ => n as f64 / 3000.0,
+            };
+            *y = *y * (1.0 + share * (gain - 1.0)) + share * offset;
+            *y += if rng.random_bool(0.003) { 50.0 } else { 0.0 };
+        }
+        let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
+        assert!(
+            adapted.stuck.is_empty(),
+            "{seed} {learner:?}: {:?}",
+            adapted.stuck
+        );
+    }
+}
+
+#[test]
+fn open_recordings_are_not_frozen() {
+    let names = [
+        ("sma_basaeri_train.csv", "voltage_V", "output"),
+        ("sma_flexinol_50MPa.csv", "temperature_C", "strain"),
+        ("sma_flexinol_150MPa.csv", "temperature_C", "strain"),
+        ("sma_flexinol_200MPa.csv", "temperature_C", "strain"),
+        (
+            "sma_isobaric_cycles_1_to_4.csv",
+            "temperature_C",
+            "extension_mm",
+        ),
+        ("sma_bend_3load.csv", "temperature_C", "extension_mm"),
+        ("sma_nitico_walgren_7MPa.csv", "temperature_C", "strain"),
+        ("sma_nitico_walgren_200MPa.csv", "temperature_C", "strain"),
+        (
+            "sma_nitihf_bigelow_50MPa.csv",
+            "temperature_C",
+            "strain_percent",
+        ),
+        (
+            "sma_nitihf_bigelow_200MPa.csv",
+            "temperature_C",
+            "strain_percent",
+        ),
+        ("bh_M130_27s_loop1.csv", "H_A_per_m", "B_T"),
+        ("bh_MnZn_ferrite_loop1.csv", "H_A_per_m", "B_T"),
+        (
+            "ferro_rtwhiteA_forc5.csv",
+            "voltage_V",
+            "polarization_uC_cm2",
+        ),
+        ("magnet_lcls2_quad_ru3.csv", "current_A", "BL_T"),
+        ("piezo_pnzt_S1_1500V.csv", "voltage_V", "displacement_nm"),
+        ("sma_baraghini_Ramp02.csv", "duty", "position_m"),
+        ("sma_baraghini_Step02.csv", "duty", "position_m"),
+        ("valve_20Hz.csv", "voltage_V", "position"),
+        ("valve_100Hz.csv", "voltage_V", "position"),
+        ("valve_prbn_1.csv", "voltage_V", "position"),
+        ("valve_sine100_1.csv", "voltage_V", "position"),
+    ];
+    for (path, (name, input, output)) in shared(names.map(|name| name.0)).iter().zip(names) {
+        let Some(path) = path else { continue };
+        let columns = Columns {
+            input,
+            output,
+            time: None,
+            load: None,
+        };
+        let (recording, _) = Recording::read(path, columns, hysteron::Repair::default()).unwrap();
+        let options = FitOptions {
+            levels: 10,
+            ..FitOptions::default()
+        };
+        let model = Fit::from(&options).run(&recording).unwrap();
+        for learner in LEARNERS {
+            let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
+            assert!(
+                adapted.stuck.is_empty(),
+                "{name} {learner:?}: {:?}",
+                adapted.stuck
+            );
+        }
+    }
+}

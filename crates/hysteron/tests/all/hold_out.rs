@@ -1,0 +1,215 @@
+//! What is held out takes no part in a fit, and is judged beside simple rivals.
+
+use hysteron::{
+    Auto, Fit, HoldOut, Model, Operator, Plane, Recording, Sign, Start, fit_holding_out, held_out,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A model with random weights, and a random zigzag through it with `noise`.
+fn measured(seed: u64, reversals: usize, noise: f64) -> (Model, Recording) {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let plane = Plane::new(0.1, 1.0, 10).unwrap();
+    let weights = (0..55).map(|_| rng.random_range(0.0..1.0)).collect();
+    let model = Model::new(Operator::Mkp, plane, weights, 0.5, Sign::Positive).unwrap();
+    let mut input = vec![0.0];
+    for k in 0..reversals {
+        let from = *input.last().unwrap();
+        let to = match k {
+            0 => 1.0,
+            _ if k % 2 == 0 => rng.random_range(f64::midpoint(from, 1.0)..1.0),
+            _ => rng.random_range(0.0..0.5 * from),
+        };
+        input.extend((1..=20).map(|n| from + (to - from) * f64::from(n) / 20.0));
+    }
+    let mut output = model.simulate(&input).unwrap();
+    let (low, high) = model.output_range();
+    for y in &mut output {
+        *y += noise * (high - low) * rng.random_range(-1.0..1.0);
+    }
+    (model, Recording::new(input, output).unwrap())
+}
+
+/// Every way of holding out, for a recording of this length.
+fn ways(length: usize) -> [HoldOut; 7] {
+    [
+        HoldOut::Branches(0.2),
+        HoldOut::Branches(1.0 / 3.0),
+        HoldOut::Rows(vec![length - 100..=length]),
+        HoldOut::Rows(vec![120..=260]),
+        HoldOut::Rows(vec![1..=50]),
+        // Row 51 is left alone between them.
+        HoldOut::Rows(vec![1..=50, 52..=90]),
+        HoldOut::Rows(vec![300..=340, 1..=50, 120..=180, 150..=200]),
+    ]
+}
+
+#[test]
+fn what_is_held_out_takes_no_part() {
+    for seed in 0..6 {
+        let (_, recording) = measured(seed, 24, 0.01);
+        for what in ways(recording.len()) {
+            let split = recording.split(&what).unwrap();
+            let mut other = recording.clone();
+            for (y, held) in other.output.iter_mut().zip(&split.held_out) {
+                if *held {
+                    *y = 100.0 - 3.0 * *y;
+                }
+            }
+            let fit = Fit::new().levels(8).smooth(Auto).bootstrap(20);
+            let (model, report) = fit_holding_out(&fit, &recording, &what).unwrap();
+            let (again, worse) = fit_holding_out(&fit, &other, &what).unwrap();
+            assert_eq!(model.weights(), again.weights(), "seed {seed}, {what:?}");
+            let summary = |model: &Model| {
+                let mut fit = model.fit.clone().unwrap();
+                fit.other.remove("hold_out").unwrap();
+                fit
+            };
+            assert_eq!(summary(&model), summary(&again));
+            assert!(worse.model.rmse > 10.0 * report.model.rmse);
+            let count = split.held_out.iter().filter(|held| **held).count();
+            assert_eq!(report.model.samples, count);
+            let training: usize = split.training.iter().map(Recording::len).sum();
+            assert_eq!(training + count, recording.len());
+        }
+    }
+}
+
+/// The weights of a fit to a part are those of the truth, so the operators have seen the same
+/// history as with the whole.
+#[test]
+fn without_a_branch_the_operators_remember_the_same() {
+    for seed in 0..6 {
+        let (truth, recording) = measured(seed, 40, 0.0);
+        for share in [0.05, 0.1, 0.25, 1.0 / 3.0] {
+            let split = recording.split(&HoldOut::Branches(share)).unwrap();
+            let modelled = truth.simulate(&recording.input).unwrap();
+            let kept: Vec<f64> = (0..recording.len())
+                .filter(|n| !split.held_out[*n])
+                .map(|n| modelled[n])
+                .collect();
+            let alone = truth.simulate(&split.training[0].input).unwrap();
+            for (a, b) in kept.iter().zip(&alone) {
+                // Rounding of sums of 55 weights.
+                assert!((a - b).abs() < 1e-10, "seed {seed}, {share}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn branches_are_spread_and_of_both_directions() {
+    for seed in 0..10 {
+        for reversals in [3, 4, 5, 8, 21, 40, 77] {
+            let (_, recording) = measured(seed, reversals, 0.0);
+            for share in [0.01, 0.1, 0.2, 0.25, 0.3] {
+                let split = recording.split(&HoldOut::Branches(share)).unwrap();
+                let branch = |n: usize| n.saturating_sub(1) / 20;
+                let held = (0..recording.len()).filter(|n| split.held_out[*n]);
+                let mut branches: Vec<usize> = held.map(branch).collect();
+                branches.dedup();
+                let wanted = (share * reversals as f64).round().max(1.0) as usize;
+                assert!(
+                    branches.len() <= wanted && 4 * branches.len() >= 3 * wanted.min(reversals / 3)
+                );
+                assert!(branches.iter().all(|b| *b > 0));
+                assert!(
+                    branches.windows(2).all(|pair| pair[1] > pair[0] + 1),
+                    "{branches:?}"
+                );
+                let even = branches.iter().filter(|b| **b % 2 == 0).count();
+                let odd = branches.len() - even;
+                // Of a handful of branches there may be no two that are apart and differ.
+                let balanced = even.abs_diff(odd) <= 1 + branches.len() / 4;
+                assert!(balanced || reversals < 8, "{branches:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_good_model_beats_the_rivals_and_a_line_beats_a_bad_one() {
+    let (_, recording) = measured(3, 24, 0.0);
+    let fit = Fit::new().levels(10).bootstrap(0);
+    for what in ways(recording.len()).iter().take(4) {
+        let (model, report) = fit_holding_out(&fit, &recording, what).unwrap();
+        assert_eq!(report.better().count(), 0, "{what:?}: {report:?}");
+        // The fit of a part of the same model finds nearly the whole of it.
+        assert!(
+            report.model.nrmse_percent.unwrap() < 1.0,
+            "{what:?}: {report:?}"
+        );
+        let fit = model.fit.unwrap();
+        let kept = &fit.other["hold_out"];
+        assert_eq!(kept["model"]["rmse"].as_f64(), Some(report.model.rmse));
+        assert_eq!(kept["rivals"][0]["name"], "straight line");
+    }
+    // A line with noise, and an operator for each sample.
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let input: Vec<f64> = (0..90).map(|n| (f64::from(n) * 0.35).sin()).collect();
+    let output = input
+        .iter()
+        .map(|x| x + rng.random_range(-0.2..0.2))
+        .collect();
+    let line = Recording::new(input, output).unwrap();
+    let fit = Fit::new().levels(30).smooth(0.0).bootstrap(0);
+    let (_, report) = fit_holding_out(&fit, &line, &HoldOut::Rows(vec![61..=90])).unwrap();
+    let better: Vec<&str> = report.better().map(|rival| rival.name).collect();
+    assert!(better.contains(&"straight line"), "{report:?}");
+}
+
+#[test]
+fn other_recordings_can_be_held_out() {
+    let (truth, recording) = measured(5, 24, 0.0);
+    let (_, mut other) = measured(6, 12, 0.0);
+    other.output = truth.simulate(&other.input).unwrap();
+    let model = Fit::new().levels(10).bootstrap(0).run(&recording).unwrap();
+    let report = held_out(&model, &recording, &other).unwrap();
+    let evaluated = hysteron::evaluate(&model, &other).unwrap();
+    assert_eq!(report.model, evaluated.forward);
+    assert!(held_out(&model, &recording, &[]).is_err());
+    // After a fit from all operators on, the model starts there too.
+    let model = Fit::new()
+        .start(Start::On)
+        .bootstrap(0)
+        .run(&recording)
+        .unwrap();
+    let report = held_out(&model, &recording, &other).unwrap();
+    let from_on = hysteron::evaluate_from(&model, &other, Start::On).unwrap();
+    assert_eq!(report.model, from_on.forward);
+}
+
+#[test]
+fn what_cannot_be_held_out_is_refused() {
+    let (_, recording) = measured(1, 12, 0.0);
+    let length = recording.len();
+    for what in [
+        HoldOut::Branches(0.0),
+        HoldOut::Branches(-0.2),
+        HoldOut::Branches(0.5),
+        HoldOut::Branches(f64::NAN),
+        HoldOut::Rows(vec![0..=3]),
+        HoldOut::Rows(vec![1..=9, 0..=3]),
+        HoldOut::Rows(vec![1..=100, 101..=length]),
+        HoldOut::Rows(vec![]),
+        HoldOut::Rows(vec![1..=length]),
+        HoldOut::Rows(vec![length..=length + 1]),
+        #[allow(clippy::reversed_empty_ranges)]
+        HoldOut::Rows(vec![9..=3]),
+    ] {
+        assert!(recording.split(&what).is_err(), "{what:?}");
+    }
+    let one_loop = recording.only(|n| n < 30).unwrap();
+    let refused = one_loop.split(&HoldOut::Branches(0.2)).unwrap_err();
+    assert!(refused.to_string().contains("three or more"), "{refused}");
+    let two = [recording.clone(), recording.clone()];
+    let rows = HoldOut::Rows(vec![1..=10]);
+    assert!(fit_holding_out(&Fit::new(), &two, &rows).is_err());
+    // A lag needs every sample before a row.
+    let mut timed = recording;
+    timed.time = Some((0..length).map(|n| n as f64).collect());
+    let lag = Fit::new().levels(8).bootstrap(0).lag(2.0);
+    let refused = fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).unwrap_err();
+    assert!(refused.to_string().contains("rows at the"), "{refused}");
+    assert!(fit_holding_out(&lag, &timed, &HoldOut::Rows(vec![length - 50..=length])).is_ok());
+}

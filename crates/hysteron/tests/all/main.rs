@@ -1,0 +1,48 @@
+//! The tests of this crate: one program, since every program is linked with all dependencies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../faulty/mod.rs"]
+mod faulty;
+
+mod adaptation;
+mod arrow_copy;
+mod batch;
+mod believed;
+mod blocks;
+mod bounds;
+mod broken;
+mod confidence;
+mod design;
+mod determined;
+mod evaluation;
+mod formats;
+mod frozen_learning;
+mod hold_out;
+mod identification;
+mod inverse_series;
+mod kept_start;
+mod parquet_copy;
+mod people;
+mod pid;
+mod preparation;
+mod prepared_faults;
+mod preview;
+mod priors;
+mod readings_that_agree;
+mod recordings;
+mod remedies;
+mod rivals;
+mod rivals_left_out;
+mod roles;
+mod seen;
+mod segments;
+mod stages;
+mod thermal;
+mod timestamps;
+mod unknown_load;
+mod validation;
+mod vectors;
+mod weight_prior;
+mod wrong_readings;
