@@ -10,7 +10,7 @@ use crate::model::Plane;
 use crate::model::body::{FirstOrder, range_of};
 use crate::model::constants::{CreepTerm, StageConstants};
 use crate::model::load::{LoadCurves, LoadDependence, LoadPart};
-use crate::model::start::FittedStart;
+use crate::model::operators::FittedStart;
 use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
 use crate::recording::{LARGEST, Quantity};

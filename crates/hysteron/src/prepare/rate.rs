@@ -8,11 +8,12 @@
 //! If time explains the residual and the path does not, it comes from rate. If both explain it
 //! equally, it comes from a plane that is too coarse or an unknown start.
 
-use super::{PrepareOptions, Step, prepare};
+use super::judge::Judge;
+use super::options::{PrepareOptions, Step};
+use super::single;
 use crate::error::Result;
 use crate::identify::{Fit, FitOptions};
 use crate::model::Surroundings;
-use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::NOISE;
 use crate::series::range;
@@ -78,7 +79,10 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
         spikes: Step::Auto,
         ..PrepareOptions::all(Step::Off)
     };
-    let (recording, _) = prepare(recording, &without_spikes, Progress::NONE)?;
+    recording.check()?;
+    let mut judge = Judge::new(recording);
+    let mut recording = recording.clone();
+    single::repair(&mut recording, &without_spikes, &mut judge);
     let Some(time) = &recording.time else {
         return Ok(None);
     };

@@ -1,7 +1,7 @@
 //! The order of rows is history: it is never changed. Where the clock says that rows are no
 //! continuation of those before them, another segment begins.
 
-use super::samples::TIME;
+use super::columns::TIME;
 use crate::recording::long_gaps;
 
 /// What the clock tells of rows, by their index.

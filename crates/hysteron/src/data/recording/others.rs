@@ -4,6 +4,7 @@ use crate::data::output::TableWriter;
 use crate::data::table::{Column, Row, TableReader};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
+use crate::series::interpolate::interpolate;
 
 /// All columns of the file that a recording was read from, in their order and with their names. A
 /// unit from a row of units is appended to the name. A time in another unit has been converted to
@@ -127,7 +128,7 @@ impl Others {
             };
             let numbers: Option<Vec<f64>> = (begin..end).map(number).collect();
             let (times, wanted) = (read.time.as_deref()?, prepared.time.as_deref()?);
-            all.extend(super::samples::interpolate(times, &numbers?, wanted));
+            all.extend(interpolate(times, &numbers?, wanted));
             begin = end;
         }
         Some(all)

@@ -3,9 +3,9 @@
 use crate::error::Result;
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::load::behind;
+use crate::identify::stages::changed::thin;
+use crate::identify::stages::load::curves::behind;
 use crate::identify::stages::load::groups::{Groups, Samples};
-use crate::identify::stages::thin;
 use crate::identify::weights::problem::Problem;
 use crate::model::LoadCurves;
 use crate::progress::Progress;
