@@ -1,6 +1,6 @@
 //! The stages around the operators of a block.
 
-use super::resource::{Lines, Parsed};
+use super::lines::{Lines, Parsed};
 use hysteron_core::{Error, Stages};
 
 /// Their constants.

@@ -10,16 +10,8 @@ use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::relay;
 use crate::scalar::Real;
-use crate::search::{Branch, Goal, along, ceil_index, first_true};
+use crate::search::{Branch, Goal, Landing, along, ceil_index, first_true};
 use crate::state::State;
-
-/// Where a way ends.
-pub(crate) struct Landing<T> {
-    /// The input, in its unit.
-    pub(crate) input: T,
-    /// `Σ μ γ` there.
-    pub(crate) output: T,
-}
 
 impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The first input on the way up at which the output meets `goal`.

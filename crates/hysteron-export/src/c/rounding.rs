@@ -1,7 +1,6 @@
 //! By how much a target may be missed that the C reports as reached, in the unit of the output.
 
-use super::CReal;
-use super::constants::{Number, unfit};
+use super::real::{CReal, Number, unfit};
 use super::stages::CSampling;
 use hysteron::{Error, Model, Operator, Result};
 use hysteron_core::{Stages, operator_index};
