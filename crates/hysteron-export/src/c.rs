@@ -145,7 +145,7 @@ fn texts<T: Number>(
     name: String,
     sampling: &CSampling,
 ) -> Result<(CExport, Vec<String>)> {
-    let constants = Constants::<T>::of(model, sampling)?;
+    let constants = Constants::<T>::new(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
         let what = "a model with stages cannot learn on the target";
         let remedy = Remedy::new("export it without {}", [Setting::on("adaptation")]);

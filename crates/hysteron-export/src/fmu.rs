@@ -90,9 +90,9 @@ pub fn fmu_bytes(model: &Model, options: &FmuOptions) -> Result<(Fmu, Vec<u8>)> 
         (None, false) => "sf_MKP",
         (None, true) => "sf_Inverse_MKP",
     };
-    let variables = variables::of(model, options.inverse)?;
+    let variables = variables::all(model, options.inverse)?;
     let describe = |token: &str| description::xml(model, (name, token), options, &variables);
-    let text = |token: &str| model_text::of(model, options.inverse, token);
+    let text = |token: &str| model_text::write(model, options.inverse, token);
     let token = token(&describe("")?, &text("")?);
     let files = package::Files {
         description: describe(&token)?,

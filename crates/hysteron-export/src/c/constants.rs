@@ -24,9 +24,9 @@ pub(super) struct Constants<T> {
 }
 
 impl<T: Number> Constants<T> {
-    pub(super) fn of(model: &Model, sampling: &CSampling) -> Result<Self> {
+    pub(super) fn new(model: &Model, sampling: &CSampling) -> Result<Self> {
         let convert = |what: &str, number: f64| {
-            T::of(number).ok_or_else(|| unfit(&format!("{what} of {number:e}")))
+            T::nearest(number).ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
         let plane = model.plane();
         let (min, max) = (
@@ -53,7 +53,7 @@ impl<T: Number> Constants<T> {
         let start = model.fitted().map(|state| -> Result<_> {
             // A position so small that the type does not have it is at the bottom.
             let points = state.turning_points();
-            let points = points.map(|x| T::of(x).unwrap_or(T::ZERO)).collect();
+            let points = points.map(|x| T::nearest(x).unwrap_or(T::ZERO)).collect();
             Ok((points, convert("an input", state.input())?))
         });
         let mut constants = Self {

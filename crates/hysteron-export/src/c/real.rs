@@ -41,7 +41,7 @@ pub(super) trait Number: Real {
     const SMALLEST: Self;
     /// The nearest number; none where digits are lost beyond that: too large, or too small to be
     /// exact.
-    fn of(number: f64) -> Option<Self>;
+    fn nearest(number: f64) -> Option<Self>;
     /// As C reads it back to the same bits.
     fn literal(self) -> String;
 }
@@ -52,7 +52,7 @@ impl Number for f32 {
     const DISTANCE: f64 = f32::EPSILON as f64;
     const SMALLEST: Self = f32::MIN_POSITIVE;
 
-    fn of(number: f64) -> Option<Self> {
+    fn nearest(number: f64) -> Option<Self> {
         let near = number as f32;
         (near.is_normal() || number == 0.0).then_some(near)
     }
@@ -68,7 +68,7 @@ impl Number for f64 {
     const DISTANCE: f64 = f64::EPSILON;
     const SMALLEST: Self = 0.0;
 
-    fn of(number: f64) -> Option<Self> {
+    fn nearest(number: f64) -> Option<Self> {
         Some(number)
     }
 

@@ -65,7 +65,7 @@ impl<T: Number> Staged<T> {
             return Ok(None);
         }
         let number = |what: &str, number: f64| {
-            let near = T::of(number).filter(|near| near.is_finite());
+            let near = T::nearest(number).filter(|near| near.is_finite());
             near.ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
         let drive = match (sampling.drive, model.thermal) {
@@ -167,7 +167,7 @@ impl<T: Number> Parts<T> {
             return Err(Error::Export(what).remedied(remedy));
         }
         let number = |what: &str, number: f64| {
-            let near = T::of(number).filter(|near| near.is_finite());
+            let near = T::nearest(number).filter(|near| near.is_finite());
             near.ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
         let (low, high) = load.range();

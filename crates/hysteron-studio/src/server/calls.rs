@@ -148,8 +148,8 @@ pub(super) async fn events(
     const EVERY: Duration = Duration::from_millis(150);
     let mut last = String::new();
     let ticks = IntervalStream::new(tokio::time::interval(EVERY));
-    let told = ticks.filter_map(move |_| {
-        let told = Told {
+    let events = ticks.filter_map(move |_| {
+        let state = Told {
             changes: *shared.changes.borrow(),
             // While a call holds the session, there is nothing new.
             jobs: shared.session.try_lock().ok()?.jobs(),
@@ -164,13 +164,13 @@ pub(super) async fn events(
                 .unwrap_or_else(PoisonError::into_inner)
                 .len(),
         };
-        let told = serde_json::to_string(&told).ok()?;
-        (told != last).then(|| {
-            last.clone_from(&told);
-            Ok(Event::default().data(told))
+        let state = serde_json::to_string(&state).ok()?;
+        (state != last).then(|| {
+            last.clone_from(&state);
+            Ok(Event::default().data(state))
         })
     });
-    Sse::new(told).keep_alive(axum::response::sse::KeepAlive::default())
+    Sse::new(events).keep_alive(axum::response::sse::KeepAlive::default())
 }
 
 fn answered(done: Result<Result<Found, Fault>, tokio::task::JoinError>) -> Response {

@@ -26,22 +26,22 @@ impl Model {
     }
 
     /// The model of which the axis is shifted by `shift` more, in the input's unit, from the load
-    /// `told`. It does not depend on a load.
+    /// `given`. It does not depend on a load.
     ///
     /// If the model's curve of shifts tells a load there, it is the model at that load. What lies
     /// beyond the curve is a shift alone.
     ///
     /// # Errors
     /// As [`Model::at_load`].
-    pub(crate) fn shifted(&self, told: Option<f64>, shift: f64) -> Result<Self> {
-        let (Some(dependence), Some(told)) = (&self.load, told) else {
+    pub(crate) fn shifted(&self, given: Option<f64>, shift: f64) -> Result<Self> {
+        let (Some(dependence), Some(given)) = (&self.load, given) else {
             return self.moved(shift);
         };
         let Some(curves) = &dependence.curves else {
-            return self.at_load(told)?.moved(shift);
+            return self.at_load(given)?.moved(shift);
         };
-        let wanted = curves.at(told)?.shift + shift;
-        let load = curves.core().of_shift(wanted).unwrap_or(told);
+        let wanted = curves.at(given)?.shift + shift;
+        let load = curves.core().of_shift(wanted).unwrap_or(given);
         let there = curves.at(load)?;
         self.at_load(load)?
             .moved((wanted - there.shift) / there.scale)

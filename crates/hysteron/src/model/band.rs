@@ -21,7 +21,7 @@ use serde::Serialize;
 /// let input: Vec<f64> = (0..300).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
 /// let noisy = |(n, t): (usize, &f64)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin();
 /// let output = input.iter().enumerate().map(noisy).collect();
-/// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
+/// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::plain() };
 /// let model = Fit::from(&options).run(&Recording::new(input, output)?)?;
 /// let band = model.band()?.ok_or("a bootstrap was asked for")?;
 /// let half_width = band.run(&model.off(), &[20.0, 60.0, 40.0])?;
@@ -185,7 +185,7 @@ impl BandEvaluation {
 
     /// The band of `model` on `recording` from the state `begin` on. `output_model` is the modelled
     /// output.
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: &Model,
         begin: &State,
         recording: &Recording,
@@ -194,7 +194,7 @@ impl BandEvaluation {
         let Some(band) = model.band()? else {
             return Ok(None);
         };
-        let around = Surroundings::of(model, recording);
+        let around = Surroundings::from_recording(model, recording);
         let half_width = band.run(begin, &model.seen(&recording.input, around)?)?;
         let modelled = output_model.iter().zip(&half_width);
         let inside = recording

@@ -61,7 +61,7 @@ impl From<Target<f64>> for Wanted {
 
 impl Wanted {
     /// What a sample wants whose input is the target.
-    pub(crate) fn of(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Self {
+    pub(crate) fn new(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Self {
         let Sample {
             input: output,
             dt,
@@ -365,7 +365,7 @@ impl Inverse<'_> {
             return Ok(());
         }
         for ((_, sample), heading) in samples {
-            take(self.step(state, Wanted::of(sample, heading, tolerance))?);
+            take(self.step(state, Wanted::new(sample, heading, tolerance))?);
         }
         Ok(())
     }

@@ -225,7 +225,7 @@ impl Inverse<'_> {
         let mut found = Vec::with_capacity(targets.len());
         for (_, sample) in surroundings.samples(self.model, targets)? {
             let heading = headings.next().flatten();
-            for (wanted, asked) in preview.push(Wanted::of(sample, heading, tolerance))? {
+            for (wanted, asked) in preview.push(Wanted::new(sample, heading, tolerance))? {
                 found.push(preview.step(self, state, wanted, asked)?);
             }
         }

@@ -72,7 +72,7 @@ impl Model {
         recording: &Recording,
     ) -> Result<(Vec<f64>, ClippedCount)> {
         let mut output = vec![0.0; recording.len()];
-        let around = Surroundings::of(self, recording);
+        let around = Surroundings::from_recording(self, recording);
         let clipped = self.run_in(state, &recording.input, around, &mut output)?;
         Ok((output, clipped))
     }
@@ -144,7 +144,7 @@ impl Model {
 impl<'a> Surroundings<'a> {
     /// Time and load of a recording, as far as `model` needs them.
     #[must_use]
-    pub fn of(model: &Model, recording: &'a Recording) -> Self {
+    pub fn from_recording(model: &Model, recording: &'a Recording) -> Self {
         Self {
             time: recording.time.as_deref().filter(|_| model.is_timed()),
             load: recording.load.as_deref().filter(|_| model.load.is_some()),
@@ -211,7 +211,7 @@ mod tests {
         let options = FitOptions {
             levels: 5,
             bootstrap: 10,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let model = Fit::from(&options).run(&recording).unwrap();
         let around = Surroundings {

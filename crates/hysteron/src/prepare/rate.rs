@@ -89,8 +89,8 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
     if time.len() < FEWEST || time[time.len() - 1] <= time[0] {
         return Ok(None);
     }
-    let model = Fit::from(FitOptions::default()).run(&recording)?;
-    let around = Surroundings::of(&model, &recording);
+    let model = Fit::from(FitOptions::plain()).run(&recording)?;
+    let around = Surroundings::from_recording(&model, &recording);
     let modelled = model.simulate_in(&recording.input, around)?;
     let pairs = recording.output.iter().zip(&modelled);
     let residual: Vec<f64> = pairs.map(|(y, m)| y - m).collect();

@@ -19,7 +19,7 @@ pub struct Others {
 
 impl Others {
     /// No rows yet. `columns` are the recording's input, output, time and load in the table.
-    pub(super) fn of(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
+    pub(super) fn new(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
         Self {
             header: table.names_with_units(),
             places: columns.map(|column| column.map(Column::place)),

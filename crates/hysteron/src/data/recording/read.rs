@@ -239,7 +239,7 @@ fn read_parts(
         (Some(name), Some(at)) => quantity(&table, name, at),
         _ => Quantity::named("load"),
     };
-    let others = with_others.then(|| Others::of(&table, all));
+    let others = with_others.then(|| Others::new(&table, all));
     let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
     let mut mended = samples.mend(&table, time_at, repair)?;
     let starts = match parted {

@@ -160,7 +160,7 @@ impl Samples {
                 copies,
                 alone,
                 repeated,
-            } = History::of(&self.series);
+            } = History::new(&self.series);
             let places = |rows: &[usize]| rows.iter().map(|&n| self.places.at(n)).collect();
             note(NoteKind::Copied, &places(&copies));
             note(NoteKind::Alone, &places(&alone));

@@ -7,7 +7,7 @@
 use crate::error::Result;
 use crate::identify::choose::criterion::Level;
 use crate::identify::choose::rivals;
-use crate::identify::choose::search::{ALONG_AXES, AROUND, Place, Step, best, smooth_at, walk};
+use crate::identify::choose::search::{ALONG_AXES, AROUND, Point, Step, best, smooth_at, walk};
 use crate::identify::choose::seen::Seen;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
@@ -227,7 +227,7 @@ struct Search {
     /// The smoothness, where it is given.
     smooth: Option<Smooth>,
     /// Where the last walk ended.
-    from: Vec<Place>,
+    from: Vec<Point>,
     near: &'static [Step],
 }
 

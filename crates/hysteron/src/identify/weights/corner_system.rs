@@ -398,7 +398,7 @@ mod tests {
             start: [Start::Off, Start::On, Start::Unknown][rng.random_range(0..3)],
             sign: Some(Sign::Positive),
             load_degree: Some(1),
-            ..FitOptions::default()
+            ..FitOptions::plain()
         }
     }
 
