@@ -38,7 +38,7 @@ def test_budget_recordings_step_and_operator():
 
 
 @pytest.mark.parametrize(
-    "options, said",
+    "options, message",
     [
         ({"heating_rate": 0}, "heating rate is 0"),
         ({"cooling_rate": np.nan}, "cooling rate is NaN"),
@@ -50,6 +50,6 @@ def test_budget_recordings_step_and_operator():
         ({"operator": "x"}, "`operator` is 'x'"),
     ],
 )
-def test_bad_options_are_named(options, said):
-    with pytest.raises(ValueError, match=said):
+def test_bad_options_are_named(options, message):
+    with pytest.raises(ValueError, match=message):
         pyhysteron.design(**{"range": (20, 80), "levels": 10, **RATES, **options})

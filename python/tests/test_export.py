@@ -25,11 +25,11 @@ def test_c(tmp_path, real):
 @pytest.mark.parametrize("inverse", [False, True])
 def test_fmu(tmp_path, fmi, inverse):
     path = tmp_path / "wire.fmu"
-    said = MODEL.export_fmu(path, inverse=inverse, fmi=fmi)
-    assert said.name == ("sf_Inverse_MKP" if inverse else "sf_MKP") and said.bytes == path.stat().st_size
+    made = MODEL.export_fmu(path, inverse=inverse, fmi=fmi)
+    assert made.name == ("sf_Inverse_MKP" if inverse else "sf_MKP") and made.bytes == path.stat().st_size
     description = zipfile.ZipFile(path).read("modelDescription.xml").decode()
     assert f'fmiVersion="{fmi}.0"' in description
-    assert all(f'name="{name}"' in description for name in said.inputs + said.outputs)
+    assert all(f'name="{name}"' in description for name in made.inputs + made.outputs)
 
 
 def test_what_is_refused(tmp_path):

@@ -112,7 +112,7 @@ def test_thermal(truth):
 
 
 @pytest.mark.parametrize(
-    "options, error, said",
+    "options, error, message",
     [
         ({"levels": 1}, ValueError, "2 to"),
         ({"levels": "many"}, TypeError, "'many'.*'auto'"),
@@ -132,8 +132,8 @@ def test_thermal(truth):
         ({"time": [0.0]}, TypeError, "own"),
     ],
 )
-def test_bad_options_are_named(recording, options, error, said):
-    with pytest.raises(error, match=said):
+def test_bad_options_are_named(recording, options, error, message):
+    with pytest.raises(error, match=message):
         pyhysteron.fit(recording, **options)
 
 
@@ -266,7 +266,7 @@ def test_a_rival_that_wins_where_data_were_held_out_is_a_warning():
 
 
 @pytest.mark.parametrize(
-    "what, error, said",
+    "what, error, message",
     [
         ("branches:80%", pyhysteron.FitError, "up to 33 %"),
         ("branches:many", pyhysteron.FitError, "`branches:many`.*such as `branches:20%`"),
@@ -277,6 +277,6 @@ def test_a_rival_that_wins_where_data_were_held_out_is_a_warning():
         ([], pyhysteron.FitError, "nothing was held out"),
     ],
 )
-def test_what_cannot_be_held_out(recording, what, error, said):
-    with pytest.raises(error, match=said):
+def test_what_cannot_be_held_out(recording, what, error, message):
+    with pytest.raises(error, match=message):
         pyhysteron.fit(recording, levels=5, bootstrap=0, hold_out=what)

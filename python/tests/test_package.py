@@ -33,8 +33,8 @@ def test_submodules_are_imported_when_they_are_used():
 
 @pytest.mark.parametrize("name, package, extra", [("plot", "matplotlib", "plot"), ("sklearn", "sklearn", "sklearn"), ("blocks", "control", "control")])
 def test_a_missing_extra_is_named(name, package, extra):
-    said = python(f"import sys; sys.modules[{package!r}] = None; import pyhysteron; pyhysteron.{name}")
-    assert f"pip install 'pyhysteron[{extra}]'" in said and "ImportError" in said
+    printed = python(f"import sys; sys.modules[{package!r}] = None; import pyhysteron; pyhysteron.{name}")
+    assert f"pip install 'pyhysteron[{extra}]'" in printed and "ImportError" in printed
 
 
 def test_there_is_no_such_attribute():

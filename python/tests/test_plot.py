@@ -134,7 +134,7 @@ def test_what_is_no_recording_or_model_is_named(recording, model):
 
 
 @pytest.mark.parametrize(
-    "error, told, draw",
+    "error, message, draw",
     [
         (TypeError, r"`at` is \[1\.5\]: .* whole numbers", lambda m, r: plot.plane(m, r.input, at=[1.5])),
         (TypeError, r"`at` is 7: a sequence", lambda m, r: plot.plane(m, r.input, at=7)),
@@ -160,7 +160,7 @@ def test_what_is_no_recording_or_model_is_named(recording, model):
         (ValueError, r"start", lambda m, r: plot.loops(r, m, start="of")),
     ],
 )
-def test_bad_input_is_named(error, told, draw, model, recording):
-    with pytest.raises(error, match=told):
+def test_bad_input_is_named(error, message, draw, model, recording):
+    with pytest.raises(error, match=message):
         draw(model, recording)
     assert not any(ax.lines for number in plt.get_fignums() for ax in plt.figure(number).axes), "nothing is drawn"

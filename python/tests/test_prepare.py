@@ -37,7 +37,7 @@ def test_each_step_can_be_set(noisy):
 
 
 @pytest.mark.parametrize(
-    "step, error, said",
+    "step, error, message",
     [
         ({"spikes": -1}, pyhysteron.PreparationError, "spike"),
         ({"dead_band": "on"}, TypeError, "`dead_band` is 'on': 'auto', 'off' or a number"),
@@ -46,8 +46,8 @@ def test_each_step_can_be_set(noisy):
         ({"low_pass": np.nan}, pyhysteron.PreparationError, "cut-off"),
     ],
 )
-def test_bad_steps_are_named(noisy, step, error, said):
-    with pytest.raises(error, match=said):
+def test_bad_steps_are_named(noisy, step, error, message):
+    with pytest.raises(error, match=message):
         pyhysteron.prepare(noisy, **step)
 
 

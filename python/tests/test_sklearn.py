@@ -111,9 +111,9 @@ def test_pipeline(data):
     assert both.fit(X, y).score(X, y) > 0.999
 
 
-@pytest.mark.parametrize("splits, said", [(1, "2 or more"), (1000, "branches, too few for 1000")])
-def test_too_many_folds(data, splits, said):
-    with pytest.raises(ValueError, match=said):
+@pytest.mark.parametrize("splits, message", [(1, "2 or more"), (1000, "branches, too few for 1000")])
+def test_too_many_folds(data, splits, message):
+    with pytest.raises(ValueError, match=message):
         next(BranchSplit(splits).split(data[0]))
 
 

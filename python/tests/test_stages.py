@@ -217,7 +217,7 @@ def test_the_start():
 
 
 @pytest.mark.parametrize(
-    "names, arguments, error, said",
+    "names, arguments, error, message",
     [
         (["body"], {}, pyhysteron.ThermalError, "`time`"),
         (["lag"], {}, pyhysteron.ThermalError, "`time`"),
@@ -234,21 +234,21 @@ def test_the_start():
         (["lag"], {"time": TIME, "start": "unknown"}, ValueError, "'fitted', 'off', 'on'"),
     ],
 )
-def test_what_is_refused(names, arguments, error, said):
+def test_what_is_refused(names, arguments, error, message):
     model = made(*names)
     input, _ = driven(model)
-    with pytest.raises(error, match=said):
+    with pytest.raises(error, match=message):
         model.simulate(input, **arguments)
     if "start" in arguments:
         return
-    with pytest.raises(error, match=said):
+    with pytest.raises(error, match=message):
         model.inverse().run(model.offset + 0 * input, **arguments)
     state = model.start()
     state.step(input[0], **({} if model.load_range is None else {"load": 150.0}))
     before = state.save()
-    with pytest.raises(error, match=said):
+    with pytest.raises(error, match=message):
         state.run(input, **arguments)
-    with pytest.raises(error, match=said):
+    with pytest.raises(error, match=message):
         model.inverse().run(model.offset + 0 * input, **arguments, state=state)
     np.testing.assert_equal(state.save(), before)
 
@@ -257,17 +257,17 @@ def test_what_a_step_refuses():
     state = made("body").start()
     state.step(0.3)
     for step in (state.step, lambda *a, **k: made("body").inverse().step(state, *a, **k)):
-        for sample, error, said in [
+        for sample, error, message in [
             ({}, pyhysteron.ThermalError, "time"),
             ({"dt": -1.0}, pyhysteron.ThermalError, "time"),
             ({"dt": np.nan}, pyhysteron.CoreError, "`dt` is NaN"),
             ({"dt": 0.1, "load": 1.0}, pyhysteron.FitError, "load"),
             ({"dt": 0.1, "load": np.inf}, pyhysteron.CoreError, "`load` is inf"),
         ]:
-            with pytest.raises(error, match=said):
+            with pytest.raises(error, match=message):
                 step(0.5, **sample)
-    for drive_range, said in [((1, 0), "order"), ((np.nan, 1), "order")]:
-        with pytest.raises(pyhysteron.FitError, match=said):
+    for drive_range, message in [((1, 0), "order"), ((np.nan, 1), "order")]:
+        with pytest.raises(pyhysteron.FitError, match=message):
             made("body").inverse(drive_range)
     with pytest.raises(pyhysteron.FitError, match="horizon"):
         made("body").inverse(horizon=-1)
@@ -314,7 +314,7 @@ def test_laws_of_the_load():
 
 
 @pytest.mark.parametrize(
-    "options, error, said",
+    "options, error, message",
     [
         ({"load_law": "shfit"}, ValueError, "'shift', 'weights' is needed. Did you mean 'shift'"),
         ({"spacing": "even"}, ValueError, "`spacing` is 'even'"),
@@ -329,8 +329,8 @@ def test_laws_of_the_load():
         ({"start": "fitted"}, ValueError, "'off', 'on', 'unknown'"),
     ],
 )
-def test_options_that_are_refused(options, error, said):
-    with pytest.raises(error, match=said):
+def test_options_that_are_refused(options, error, message):
+    with pytest.raises(error, match=message):
         pyhysteron.fit(18 + 60 * WAVE, WAVE**2, time=TIME, **{"levels": 4, "bootstrap": 0, **options})
 
 
@@ -412,8 +412,8 @@ def test_a_regressor_with_columns_for_time_and_load():
 
 def test_pages_and_figures_of_stages():
     page = made("body", "load", "spacing", "creep", "lag")._repr_html_()
-    for said in ("thermal body", "stress [MPa]", "levels", "creep", "lag"):
-        assert said in page
+    for message in ("thermal body", "stress [MPa]", "levels", "creep", "lag"):
+        assert message in page
     text = repr(made("body", "load"))
     assert "behind a thermal body" in text and "under stress [MPa]" in text
     plot = pytest.importorskip("pyhysteron.plot")

@@ -51,7 +51,7 @@ pub unsafe extern "C" fn hysteron_batch_of(model: u64, lanes: usize, batch: *mut
     guard(|| {
         // SAFETY: the contract of the crate.
         let batch = unsafe { Arguments::default().out(batch, "batch")? };
-        let made = BatchModel::of(MODELS.get(model, "model")?, lanes)?;
+        let made = BatchModel::new(MODELS.get(model, "model")?, lanes)?;
         batch.set(BATCHES.insert(Mutex::new(made))?);
         Ok(())
     })

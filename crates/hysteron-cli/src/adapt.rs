@@ -207,7 +207,7 @@ fn to_text(
     line("last weights, over all of it again", &again);
     let counts = &adapted.counts;
     let moved = &adapted.drift;
-    let told = match adapted.options {
+    let learning = match adapted.options {
         EstimatorOptions::Refit(refit) => format!(
             "{} refits on the way and one at the end, over {}; {} samples taken, {} at rest, {} \
              readings rejected",
@@ -227,7 +227,7 @@ fn to_text(
         true => "not written".into(),
         false => args.out.display().to_string(),
     };
-    let mut lines = vec![format!("{target}: {told}"), text::table(&rows)];
+    let mut lines = vec![format!("{target}: {learning}"), text::table(&rows)];
     if let Some(found) = &adapted.shift {
         lines.push(shift(found, model));
     } else {

@@ -101,12 +101,12 @@ fn identify(
     what: Option<&HoldOut>,
 ) -> Result<(Model, Option<HeldOut>)> {
     let bar = progress::stages();
-    let told = |stage: &'static str, done: f64| {
+    let report = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
     let fit = fit_of(&args.how)?.repeats(repeats);
-    let fit = fit.progress(Progress::new(&told));
+    let fit = fit.progress(Progress::new(&report));
     let found = match what {
         None => (fit.run(recordings)?, None),
         Some(what) => {
@@ -158,7 +158,7 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
             Step::Value(lag) => Choice::Fixed(lag),
         },
         curve: count("curve", args.curve)?,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let fit = Fit::from(options)
         .levels(levels)

@@ -48,11 +48,11 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
     let inputs: Vec<&Path> = args.data.iter().map(PathBuf::as_path).collect();
     let target = args.force.target(&args.out, &inputs);
     let bar = progress::share();
-    let told = |what: &'static str, done: f64| {
+    let report = |what: &'static str, done: f64| {
         progress::stage(&bar, what, done);
         Ok(())
     };
-    let found = fit_fleet(&args.data, &options, target, Progress::new(&told));
+    let found = fit_fleet(&args.data, &options, target, Progress::new(&report));
     bar.finish_and_clear();
     let found = found?;
     for note in &found.notes {
@@ -126,7 +126,7 @@ fn join(args: &args::FleetJoin) -> Result<()> {
 
 fn check(args: &args::FleetCheck) -> Result<()> {
     let fleet = rows(&args.models)?;
-    let norm = Norm::of(&fleet)?;
+    let norm = Norm::from_rows(&fleet)?;
     let mut found = Vec::new();
     for new in &args.new {
         let is_model = new
@@ -160,7 +160,7 @@ fn report(args: &args::FleetReport) -> Result<()> {
         title: &format!("The fleet {}", args.models.display()),
         shown: Shown::Fleet {
             rows: &rows,
-            norm: &Norm::of(&rows)?,
+            norm: &Norm::from_rows(&rows)?,
         },
         made: typed.made(),
     };

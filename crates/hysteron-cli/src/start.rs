@@ -136,11 +136,11 @@ fn unclear(args: &args::Begin, roles: &Roles) -> Box<dyn Error> {
 /// A fit that is tested on a fifth of the branches, where there are enough of them.
 fn fit(recordings: &[Recording]) -> Result<(Model, Option<HeldOut>)> {
     let bar = progress::stages();
-    let told = |stage: &'static str, done: f64| {
+    let report = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
-    let fit = Fit::new().progress(Progress::new(&told));
+    let fit = Fit::new().progress(Progress::new(&report));
     let fifth = HoldOut::Branches(0.2);
     let found = match recordings
         .iter()

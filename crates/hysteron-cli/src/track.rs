@@ -33,11 +33,11 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     });
     let folder = folder.transpose()?;
     let bar = progress::stages();
-    let told = |stage: &'static str, done: f64| {
+    let report = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
-    let comparison = track(&scenario, Progress::new(&told));
+    let comparison = track(&scenario, Progress::new(&report));
     bar.finish_and_clear();
     let comparison = comparison?;
     if let Some(folder) = folder {

@@ -49,7 +49,7 @@ impl<T: Real> Position<T> {
             x: T::ZERO,
             y: T::ZERO,
             top: START,
-            began: Split::of(T::ZERO, levels),
+            began: Split::new(T::ZERO, levels),
             began_y: T::ZERO,
             end: T::INFINITY,
         }
@@ -94,7 +94,7 @@ impl<T: Real> Position<T> {
 
     /// The slope of `Σ μ γ` over the position, along the present branch.
     pub(crate) fn slope(&self, grid: Grid<'_, T>) -> T {
-        let here = Split::of(self.x, grid.levels);
+        let here = Split::new(self.x, grid.levels);
         match self.is_rising() {
             true => grid.slope_up(here, self.began),
             false => grid.slope_down(self.began, here),
@@ -105,7 +105,7 @@ impl<T: Real> Position<T> {
     /// the steps to the next level and from the last one.
     pub(crate) fn step_of_relays(&self, grid: Grid<'_, T>) -> T {
         let level = |split: Split<T>| split.cell + usize::from(split.part > T::HALF);
-        let (here, began) = (level(Split::of(self.x, grid.levels)), level(self.began));
+        let (here, began) = (level(Split::new(self.x, grid.levels)), level(self.began));
         let step = |n: usize| match self.is_rising() {
             true => grid.corner(n + 1, began) - grid.corner(n, began),
             false => grid.corner(began, n) - grid.corner(began, n + 1),
@@ -117,7 +117,7 @@ impl<T: Real> Position<T> {
 
     /// Computes the outputs of another table at all turning points and at the present position.
     pub(crate) fn rebase(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>) {
-        let split = |x| Split::of(x, grid.levels);
+        let split = |x| Split::new(x, grid.levels);
         let along = |from: Turn<T>, to: T| {
             if to > from.x {
                 from.y + grid.everett(split(to), split(from.x))
@@ -163,7 +163,7 @@ impl<T: Real> Position<T> {
         if before::<T, RISING>(x, self.x) || !before::<T, RISING>(x, self.end) {
             return false;
         }
-        let here = Split::of(x, grid.levels);
+        let here = Split::new(x, grid.levels);
         self.x = x;
         self.y = if RISING {
             self.began_y + grid.everett(here, self.began)
@@ -205,7 +205,7 @@ impl<T: Real> Position<T> {
             };
         }
         let began = turns[self.top];
-        self.began = Split::of(began.x, grid.levels);
+        self.began = Split::new(began.x, grid.levels);
         self.began_y = began.y;
         self.end = turns[self.top - 1].x;
         turned
@@ -247,7 +247,7 @@ fn before<T: Real, const RISING: bool>(a: T, b: T) -> bool {
 #[inline(never)]
 fn merge<T: Real>(recent: &mut [Turn<T>; LOOK + 1], grid: Grid<'_, T>, min: T) -> bool {
     let [outer_max, outer_min, inner_max, inner_min, peak] = recent.map(|turn| turn.x);
-    let split = |x| Split::of(x, grid.levels);
+    let split = |x| Split::new(x, grid.levels);
     let cell = |max, min| (split(max).cell, split(min).cell);
     let here = cell(peak, min);
     if cell(outer_max, outer_min) != here || cell(inner_max, inner_min) != here {

@@ -101,7 +101,7 @@ pub(crate) struct Split<T> {
 
 impl<T: Real> Split<T> {
     #[inline(always)]
-    pub(crate) fn of(x: T, levels: usize) -> Self {
+    pub(crate) fn new(x: T, levels: usize) -> Self {
         let middle = (x - T::HALF).min(T::from_index(levels - 1));
         let (start, cell) = middle.nearest_index();
         Self {
@@ -133,7 +133,7 @@ pub(crate) struct Triangle<T> {
 impl<T: Real> Triangle<T> {
     /// The triangle that has `(M, m)`. Where `M = m` the terms cancel to exactly zero.
     #[inline(always)]
-    pub(crate) fn of(max: Split<T>, min: Split<T>) -> Self {
+    pub(crate) fn new(max: Split<T>, min: Split<T>) -> Self {
         let near = table_index(max.cell, min.cell);
         // From C[p][q] to C[p+1][q] or to C[p][q+1].
         let step = if max.part > min.part { max.cell + 1 } else { 1 };
@@ -164,7 +164,7 @@ impl<T: Real> Grid<'_, T> {
             far,
             larger,
             smaller,
-        } = Triangle::of(max, min);
+        } = Triangle::new(max, min);
         let [near, mid, far] = [near, mid, far].map(|index| self.table[index]);
         near + larger * (mid - near) + smaller * (far - mid)
     }

@@ -143,6 +143,14 @@ pub(crate) fn ceil_index<T: Real>(x: T, levels: usize) -> usize {
     }
 }
 
+/// Where a way ends.
+pub(crate) struct Landing<T> {
+    /// The input, in its unit.
+    pub(crate) input: T,
+    /// `Σ μ γ` there.
+    pub(crate) output: T,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -161,8 +161,8 @@ impl<T: Real, S: Memory<Turn<T>>> State<T, S> {
         } else {
             (-T::ONE, from, to)
         };
-        let [max, min] = [max, min].map(|x| Split::of(x, self.levels));
-        let triangle = Triangle::of(max, min);
+        let [max, min] = [max, min].map(|x| Split::new(x, self.levels));
+        let triangle = Triangle::new(max, min);
         [
             (triangle.near, sign * (T::ONE - triangle.larger)),
             (triangle.mid, sign * (triangle.larger - triangle.smaller)),

@@ -1,98 +1,29 @@
 //! C99 with the model as constants.
 
+mod algorithm;
 mod constants;
 mod name;
+mod notation;
+mod real;
 mod rounding;
 mod seal;
 mod stage_text;
 mod stages;
 mod text;
+mod written;
 
-use constants::{Constants, Number};
+use algorithm::{ADAPTATION, ALGORITHM, STAGES};
+use constants::Constants;
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
+pub use real::CReal;
+use real::Number;
 pub use stages::CSampling;
 use std::path::{Path, PathBuf};
-
-/// Names and texts of the algorithm's files, the first with the number type.
-const ALGORITHM: [(&str, &str); 4] = [
-    ("hysteron_mcu.h", HEADER),
-    ("hysteron_mcu.c", include_str!("../mcu/hysteron_mcu.c")),
-    (
-        "hysteron_mcu_inverse.c",
-        include_str!("../mcu/hysteron_mcu_inverse.c"),
-    ),
-    (
-        "hysteron_mcu_internal.h",
-        include_str!("../mcu/hysteron_mcu_internal.h"),
-    ),
-];
-const HEADER: &str = include_str!("../mcu/hysteron_mcu.h");
-
-/// The same for models that learn.
-const ADAPTATION: [(&str, &str); 2] = [
-    (
-        "hysteron_mcu_adapt.h",
-        include_str!("../mcu/hysteron_mcu_adapt.h"),
-    ),
-    (
-        "hysteron_mcu_adapt.c",
-        include_str!("../mcu/hysteron_mcu_adapt.c"),
-    ),
-];
-
-/// The same for models with stages.
-const STAGES: [(&str, &str); 5] = [
-    (
-        "hysteron_mcu_stages.h",
-        include_str!("../mcu/hysteron_mcu_stages.h"),
-    ),
-    (
-        "hysteron_mcu_stages.c",
-        include_str!("../mcu/hysteron_mcu_stages.c"),
-    ),
-    (
-        "hysteron_mcu_stages_inverse.c",
-        include_str!("../mcu/hysteron_mcu_stages_inverse.c"),
-    ),
-    (
-        "hysteron_mcu_behind.h",
-        include_str!("../mcu/hysteron_mcu_behind.h"),
-    ),
-    (
-        "hysteron_mcu_stages_internal.h",
-        include_str!("../mcu/hysteron_mcu_stages_internal.h"),
-    ),
-];
+pub use written::{CExport, CMemory, CWorstCase};
 
 /// The licence of the algorithm. The model in the files belongs to its maker.
 const LICENCE: &str =
     "Copyright (c) 2026 the hysteron developers. SPDX-License-Identifier: MIT OR Apache-2.0";
-
-/// The number type that the C computes in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CReal {
-    /// `float`, for processors with a unit for it, such as a Cortex-M4F.
-    #[default]
-    Float,
-    /// `double`, the digits of the library itself.
-    Double,
-}
-
-impl CReal {
-    /// The type's name in C.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Float => "float",
-            Self::Double => "double",
-        }
-    }
-
-    /// The line of the header that says it.
-    fn line(self) -> String {
-        format!("typedef {} hys_real;", self.name())
-    }
-}
 
 /// How to write a model as C.
 #[derive(Debug, Clone, Copy)]
@@ -105,72 +36,6 @@ pub struct COptions<'a> {
     pub source: &'a Path,
     /// Whether the model can learn on the target.
     pub adaptation: bool,
-}
-
-/// What was written, and what it needs on the target.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CExport {
-    /// The files.
-    pub files: Vec<PathBuf>,
-    /// The model's name in C.
-    pub name: String,
-    /// The number type.
-    pub real: CReal,
-    /// `K`.
-    pub levels: usize,
-    /// Whether there is an inverse: no weight is below zero.
-    pub inverse: bool,
-    /// What a target may be missed by that the inverse reports as reached, beside its tolerance, in
-    /// the output's unit: the rounding of the number type, at most a thousandth of the range of
-    /// outputs. Zero without an inverse.
-    pub rounding: f64,
-    /// The stages around the operators, in the order of the signal: `body`, `load`, `spacing`,
-    /// and so on.
-    pub stages: Vec<&'static str>,
-    /// The sample time in seconds that the constants hold for, where the model depends on time.
-    pub dt: Option<f64>,
-    /// Bytes.
-    pub memory: CMemory,
-    /// The worst case of one call.
-    pub worst_case: CWorstCase,
-}
-
-/// Bytes of a model on a 32-bit target with naturally aligned numbers, such as a Cortex-M.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CMemory {
-    /// The model's constants: flash.
-    pub constants: usize,
-    /// A state: RAM.
-    pub state: usize,
-    /// Of it, the operators at the present load, where the weights depend on the load.
-    pub mixed: usize,
-    /// Its turning points: RAM.
-    pub turns: usize,
-    /// For a model that learns: the additional memory, without its turning points. RAM.
-    pub adaptation: Option<usize>,
-}
-
-/// How many iterations the loops of one call take at most.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CWorstCase {
-    /// Turning points passed in a step, `2K`.
-    pub turning_points: usize,
-    /// Iterations of the step's loop, `2K + 3`.
-    pub step: usize,
-    /// Halvings of an inverse step's two bisections together, before it steps.
-    pub halvings: usize,
-}
-
-impl CWorstCase {
-    fn of(levels: usize) -> Self {
-        // A bisection of n places takes ⌊log₂ n⌋ + 1 halvings.
-        let halvings = |places: usize| places.ilog2() as usize + 1;
-        Self {
-            turning_points: 2 * levels,
-            step: 2 * levels + 3,
-            halvings: halvings(2 * levels + 1) + halvings(levels),
-        }
-    }
 }
 
 /// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as
@@ -280,7 +145,7 @@ fn texts<T: Number>(
     name: String,
     sampling: &CSampling,
 ) -> Result<(CExport, Vec<String>)> {
-    let constants = Constants::<T>::of(model, sampling)?;
+    let constants = Constants::<T>::new(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
         let what = "a model with stages cannot learn on the target";
         let remedy = Remedy::new("export it without {}", [Setting::on("adaptation")]);
@@ -314,7 +179,7 @@ fn texts<T: Number>(
             .map_or_else(Vec::new, |stages| stages.names()),
         dt: sampling.dt,
         memory: constants.memory(options.adaptation),
-        worst_case: CWorstCase::of(levels),
+        worst_case: CWorstCase::new(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
     let (float, wanted) = (CReal::Float.line(), options.real.line());

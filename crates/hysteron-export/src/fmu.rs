@@ -5,46 +5,15 @@
 
 mod description;
 mod model_text;
+mod options;
 mod package;
 mod staged;
 mod units;
 mod variables;
 
 use hysteron::{AtomicFile, Destination, Error, Model, Own, Remedy, Result, Setting};
+pub use options::{Fmi, FmuOptions};
 use sha2::{Digest, Sha256};
-
-/// What an FMU is to be.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct FmuOptions {
-    /// The inverse of the model, from the wanted output to the input, instead of the model.
-    pub inverse: bool,
-    /// The standard that it follows.
-    pub fmi: Fmi,
-    /// The block's name, a C identifier of up to 63 letters; `sf_MKP` or `sf_Inverse_MKP` without
-    /// one.
-    pub name: Option<String>,
-}
-
-/// A version of the Functional Mock-up Interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Fmi {
-    /// FMI 2.0, co-simulation: what most tools import.
-    #[default]
-    V2,
-    /// FMI 3.0, co-simulation.
-    V3,
-}
-
-impl Fmi {
-    /// `2.0` or `3.0`.
-    #[must_use]
-    pub fn version(self) -> &'static str {
-        match self {
-            Fmi::V2 => "2.0",
-            Fmi::V3 => "3.0",
-        }
-    }
-}
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,9 +90,9 @@ pub fn fmu_bytes(model: &Model, options: &FmuOptions) -> Result<(Fmu, Vec<u8>)> 
         (None, false) => "sf_MKP",
         (None, true) => "sf_Inverse_MKP",
     };
-    let variables = variables::of(model, options.inverse)?;
+    let variables = variables::all(model, options.inverse)?;
     let describe = |token: &str| description::xml(model, (name, token), options, &variables);
-    let text = |token: &str| model_text::of(model, options.inverse, token);
+    let text = |token: &str| model_text::write(model, options.inverse, token);
     let token = token(&describe("")?, &text("")?);
     let files = package::Files {
         description: describe(&token)?,

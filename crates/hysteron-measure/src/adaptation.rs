@@ -4,9 +4,8 @@
 use crate::folder;
 use crate::result::Result;
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, Fit, FitOptions, Learner,
-    Model, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start, State, Step, Turning,
-    Window, adapt, plane_of, prepare,
+    AdaptOptions, Adaptive, Columns, DriftBasis, Errors, Fit, FitOptions, Learner, Model, Progress,
+    Recording, Repair, Sign, Start, State, Window, adapt, plane_of,
 };
 use hysteron_sim::rig::{Experiment, Reproduction};
 use std::ops::Range;
@@ -139,40 +138,17 @@ fn simulated(model: &Model, state: &mut State, input: &[f64]) -> Result<Vec<f64>
     Ok(output)
 }
 
-/// Cycles from one highest temperature to the next, without what begins another one.
-fn split(folder: &Path) -> Result<(Plane, Vec<Recording>)> {
-    let raw = read(folder, "isobaric_cycles_1_to_4", "extension_mm")?;
-    let steps = PrepareOptions {
-        signs: true,
-        spikes: Step::Value(4.0),
-        ..PrepareOptions::all(Step::Off)
-    };
-    let (whole, _) = prepare(&raw, &steps, Progress::NONE)?;
-    let ((low, high), _) = whole.ranges();
-    let cold = |t: &f64| *t < whole.input[0] - 0.02 * (high - low);
-    let begin = whole.input.iter().position(cold).unwrap_or(0);
-    let mut turning = Turning::new(0.2 * (high - low));
-    let mut bounds = vec![begin];
-    for &t in &whole.input {
-        if let Some((n, Direction::Falling)) = turning.push(t)
-            && n > begin
-        {
-            bounds.push(n);
-        }
-    }
-    let cycles = bounds.windows(2).map(|b| part(&whole, b[0]..b[1]));
-    Ok((plane_of(&whole, LEVELS)?, cycles.collect()))
-}
-
 fn cycles(folder: &Path) -> Result<()> {
-    let (plane, cycles) = split(folder)?;
-    let range = part(&cycles[0], 0..cycles[0].len()).ranges().1;
+    let raw = read(folder, "isobaric_cycles_1_to_4", "extension_mm")?;
+    let (whole, cycles) = crate::cycles::cycles(&raw)?;
+    let plane = plane_of(&whole, LEVELS)?;
+    let range = cycles[0].ranges().1;
     let fitted = |cycle: &Recording| {
         let options = FitOptions {
             start: Start::On,
             range: Some((plane.min(), plane.max())),
             levels: LEVELS,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         Fit::from(&options).run(cycle)
     };
@@ -315,7 +291,7 @@ impl Loops {
                 // A strain is recovered on heating; at the lowest stress there is hardly any to
                 // tell that from.
                 sign: Some(Sign::Negative),
-                ..FitOptions::default()
+                ..FitOptions::plain()
             },
         })
     }

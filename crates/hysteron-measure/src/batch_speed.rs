@@ -72,7 +72,7 @@ fn series(rng: &mut ChaCha8Rng, samples: usize, is_smooth: bool) -> Vec<f64> {
 /// Nanoseconds for a sample, in the batch and one after the other.
 fn measured(models: &[Model], lanes: usize, inputs: &[f64]) -> Result<[f64; 2]> {
     let mut batch = match models {
-        [model] => BatchModel::of(model.clone(), lanes)?,
+        [model] => BatchModel::new(model.clone(), lanes)?,
         models => models.iter().cloned().collect(),
     };
     let of = |lane: usize| &models[lane % models.len()];

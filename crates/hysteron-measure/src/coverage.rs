@@ -152,7 +152,7 @@ impl Coverage {
         let Some(band) = model.band()? else {
             return Ok(());
         };
-        let around = hysteron::Surroundings::of(model, recording);
+        let around = hysteron::Surroundings::from_recording(model, recording);
         let output = model.simulate_in(&recording.input, around)?;
         let half = band.run(&model.start(), &model.seen(&recording.input, around)?)?;
         for n in (0..recording.len()).filter(|n| of(*n)) {

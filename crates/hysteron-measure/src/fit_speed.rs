@@ -90,7 +90,7 @@ fn options(levels: usize) -> FitOptions {
         range: Some((20.0, 80.0)),
         // The minimum that SciPy looks for.
         ridge: 0.0,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     }
 }
 

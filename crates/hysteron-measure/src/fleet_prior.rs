@@ -41,7 +41,7 @@ pub(crate) fn run(_: &[String]) -> Result<()> {
         .iter()
         .map(|recording| fit.run(recording))
         .collect::<Result<_, _>>()?;
-    let priors = FLEETS.map(|count| WeightPrior::of(&models[..count]).map(Arc::new));
+    let priors = FLEETS.map(|count| WeightPrior::from_models(&models[..count]).map(Arc::new));
     let priors = priors.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mean = mean_of(&models)?;
     print!("{}", include_str!("text/fleet-prior.md"));

@@ -4,7 +4,6 @@
 //! `--splits FOLDER` writes the tasks as tables instead. `--entry NAME=FOLDER` adds the predictions
 //! of another method as a column. `--only WORD` runs the rows whose name has that word.
 
-mod cycles;
 mod entry;
 mod methods;
 mod prandtl;

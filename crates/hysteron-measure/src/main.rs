@@ -5,6 +5,7 @@ mod adaptation;
 mod batch_speed;
 mod control;
 mod coverage;
+mod cycles;
 mod faults;
 mod fit_speed;
 mod fleet_prior;

@@ -35,7 +35,7 @@ fn row(name: &str, recording: Recording) -> Result<()> {
             operator,
             start,
             levels: LEVELS,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         left_out(&recordings, &options, candidates, Progress::NONE)
     };

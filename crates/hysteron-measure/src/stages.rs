@@ -28,7 +28,7 @@ fn read(folder: &Path, name: &str, columns: Columns<'_>) -> Result<Recording> {
 fn options(levels: usize) -> FitOptions {
     FitOptions {
         levels,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     }
 }
 
@@ -290,7 +290,7 @@ fn drive(folder: &Path) -> Result<()> {
     for (name, recording) in ["ramp", "step"].into_iter().zip(&recordings) {
         for (policy, word) in [(Policy::Hold, "hold"), (Policy::Anticipate, "anticipate")] {
             for seconds in [0.0, 13.0] {
-                let around = Surroundings::of(&model, recording);
+                let around = Surroundings::from_recording(&model, recording);
                 let tolerance = match policy {
                     Policy::Hold => 0.0,
                     Policy::Anticipate => model.usual_tolerance(),

@@ -214,7 +214,7 @@ pub(crate) fn adapt_options(
         ];
         if let Some((_, slot)) = counts.into_iter().find(|(slot, _)| *slot == name) {
             let count: Option<Integer> = value.extract()?;
-            *slot = count.map(|count| count.of(&name)).transpose()?;
+            *slot = count.map(|count| count.convert(&name)).transpose()?;
             continue;
         }
         let slots = [

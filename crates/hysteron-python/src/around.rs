@@ -13,7 +13,7 @@ pub(crate) struct Around {
 
 impl Around {
     /// Those of `count` samples. One number is the load of all of them.
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: &Model,
         count: usize,
         time: Option<&Bound<'_, PyAny>>,

@@ -56,7 +56,7 @@ impl BatchModel {
     fn new(models: &Bound<'_, PyAny>, count: Option<Integer>) -> PyResult<Self> {
         let batch = match (models.extract::<Model>(), count) {
             (Ok(model), Some(count)) => {
-                hysteron::BatchModel::of(model.inner, count.of("count")?).raise()?
+                hysteron::BatchModel::new(model.inner, count.convert("count")?).raise()?
             }
             (Ok(_), None) => {
                 let text = "`count`: the number of lanes of one model is needed";

@@ -176,7 +176,7 @@ pub(crate) fn design(
         heating: heating_rate,
         cooling: cooling_rate,
     };
-    let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
+    let plane = Plane::new(range.0, range.1, levels.convert("levels")?).raise()?;
     let options = DesignOptions {
         operator: crate::choices::operator(operator)?,
         budget_s: budget,

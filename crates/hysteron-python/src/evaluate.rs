@@ -89,7 +89,7 @@ pub(crate) fn excitation<'py>(
     levels: Integer,
     operator: &str,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
+    let plane = Plane::new(range.0, range.1, levels.convert("levels")?).raise()?;
     let operator = crate::choices::operator(operator)?;
     excited(py, &inputs_of(input, "input")?, plane, operator)
 }
@@ -101,7 +101,7 @@ pub(crate) fn excited_within<'py>(
     input: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let see = |input: &[f64], recording: Option<&hysteron::Recording>| {
-        let around = recording.map(|recording| Surroundings::of(model, recording));
+        let around = recording.map(|recording| Surroundings::from_recording(model, recording));
         let seen = model.seen(input, around.unwrap_or_default()).raise()?;
         Ok(seen.into_owned())
     };

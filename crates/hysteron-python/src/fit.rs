@@ -216,7 +216,7 @@ pub(crate) fn left_out<'py>(
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let names = ["time", "load", "progress"];
-    let (mut options, auto) = fit_options("left_out", &names, FitOptions::default(), options)?;
+    let (mut options, auto) = fit_options("left_out", &names, FitOptions::plain(), options)?;
     let candidates = (auto.levels || auto.smooth).then(|| {
         Candidates::new(
             (!auto.levels).then_some(options.levels),
@@ -253,7 +253,7 @@ pub(crate) fn fit_with(
     let defaults = FitOptions {
         robust: true,
         spacing: Spacing::Auto,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let names = [names, &STAGES[..]].concat();
     let (options, auto) = fit_options(call, &names, defaults, options)?;
@@ -272,7 +272,7 @@ pub(crate) fn fit_with(
     }
     Ok(match bootstrap {
         None => fit.bootstrap(Auto),
-        Some(count) => fit.bootstrap(count.of::<usize>("bootstrap")?),
+        Some(count) => fit.bootstrap(count.convert::<usize>("bootstrap")?),
     })
 }
 
@@ -311,7 +311,7 @@ fn fit_options(
                 return Err(another_kind(&name, "a whole number or 'auto'", &value));
             }
             "levels" => {
-                options.levels = value.extract::<Integer>()?.of("levels")?;
+                options.levels = value.extract::<Integer>()?.convert("levels")?;
                 auto.levels = false;
             }
             "range" => options.range = Some(named(&name, "a pair of numbers", &value)?),
@@ -335,7 +335,7 @@ fn fit_options(
                 return Err(another_kind(&name, "a whole number or 'auto'", &value));
             }
             "load_degree" => {
-                options.load_degree = Some(value.extract::<Integer>()?.of("load_degree")?);
+                options.load_degree = Some(value.extract::<Integer>()?.convert("load_degree")?);
             }
             other if !names.contains(&other) => {
                 return Err(no_argument(call, &name, &[names, &OPTIONS].concat()));
@@ -344,7 +344,7 @@ fn fit_options(
             "robust" => options.robust = named(&name, "True or False", &value)?,
             "spacing" => options.spacing = choice("spacing", &text()?, &SPACINGS)?,
             "creep" => {
-                let terms = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.of("creep");
+                let terms = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.convert("creep");
                 options.creep = stage(&name, &value, 0, terms)?;
             }
             "lag" => {
@@ -352,7 +352,8 @@ fn fit_options(
                 options.lag = stage(&name, &value, 0.0, seconds)?;
             }
             "curve" => {
-                let pieces = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.of("curve");
+                let pieces =
+                    |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.convert("curve");
                 options.curve = stage(&name, &value, 0, pieces)?;
             }
             _ => return Err(no_argument(call, &name, &[names, &OPTIONS].concat())),

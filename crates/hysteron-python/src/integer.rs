@@ -24,7 +24,7 @@ impl Integer {
     ///
     /// # Errors
     /// `TypeError` for what is no integer, `ValueError` for one that does not fit.
-    pub(crate) fn of<T: TryFrom<i64>>(&self, argument: &str) -> PyResult<T> {
+    pub(crate) fn convert<T: TryFrom<i64>>(&self, argument: &str) -> PyResult<T> {
         let fits = match self.kind {
             Kind::Number(number) => T::try_from(number).ok(),
             _ => None,

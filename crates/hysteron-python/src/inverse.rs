@@ -159,7 +159,7 @@ impl Inverse {
         let target = samples(target, "target")?;
         let target = target.as_slice()?;
         let model = &self.model.inner;
-        let around = Around::of(model, target.len(), time, load)?;
+        let around = Around::new(model, target.len(), time, load)?;
         let policy = choice("policy", policy, &POLICIES)?;
         let tolerance = match tolerance {
             None if policy == Policy::Anticipate => model.usual_tolerance(),

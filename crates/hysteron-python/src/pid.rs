@@ -59,7 +59,7 @@ pub(crate) struct Pid {
 }
 
 impl Pid {
-    pub(crate) fn of(gains: Gains) -> Self {
+    pub(crate) fn from_gains(gains: Gains) -> Self {
         let inner = Shared::new(control::Pid::new(gains));
         Self { gains, inner }
     }
@@ -76,7 +76,7 @@ impl Pid {
             derivative_s,
         };
         gains.check().raise()?;
-        Ok(Self::of(gains))
+        Ok(Self::from_gains(gains))
     }
 
     /// Gains by Tyreus & Luyben 1992, as `RelayTest.gains` gives.
@@ -103,7 +103,7 @@ impl Pid {
     pub(crate) fn from_oscillation(ultimate_gain: f64, period_s: f64) -> PyResult<Self> {
         let gains = Gains::from_oscillation(ultimate_gain, period_s);
         gains.check().raise()?;
-        Ok(Self::of(gains))
+        Ok(Self::from_gains(gains))
     }
 
     /// Gains by SIMC (Skogestad 2003) from a step test on one branch.
@@ -143,12 +143,17 @@ impl Pid {
     ) -> PyResult<Self> {
         let output = samples(output, "output")?;
         let interval_s = interval("interval_s", interval_s)?;
-        let gains = Gains::from_step(output.as_slice()?, begin.of("begin")?, step, interval_s);
+        let gains = Gains::from_step(
+            output.as_slice()?,
+            begin.convert("begin")?,
+            step,
+            interval_s,
+        );
         let gains = gains.ok_or_else(|| {
             PyValueError::new_err("`output` does not answer the step by more than its noise, so that no PID can be tuned")
         })?;
         gains.check().raise()?;
-        Ok(Self::of(gains))
+        Ok(Self::from_gains(gains))
     }
 
     /// The proportional gain.

@@ -42,7 +42,7 @@ impl WeightPrior {
     #[new]
     fn new(models: Vec<PyRef<'_, Model>>) -> PyResult<Self> {
         let models: Vec<hysteron::Model> = models.iter().map(|m| (*m.inner).clone()).collect();
-        let prior = hysteron::WeightPrior::of(&models).raise()?;
+        let prior = hysteron::WeightPrior::from_models(&models).raise()?;
         Ok(prior.into())
     }
 

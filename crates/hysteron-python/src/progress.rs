@@ -30,7 +30,7 @@ pub(crate) fn with_progress<T: Send>(
     let bar = callback(py, progress)?;
     let stop = AtomicBool::new(false);
     let news = Mutex::new(None);
-    let told = |what: &'static str, share: f64| {
+    let callback = |what: &'static str, share: f64| {
         *news.lock().unwrap_or_else(PoisonError::into_inner) = Some((what, share));
         match stop.load(Relaxed) {
             true => Err(Error::Fit("interrupted".into())),
@@ -50,7 +50,7 @@ pub(crate) fn with_progress<T: Send>(
         let worker = scope.spawn(|| {
             // Dropped in a panic too, which ends the waiting.
             let done = done;
-            let result = in_pool(|| work(Progress::new(&told)));
+            let result = in_pool(|| work(Progress::new(&callback)));
             drop(done);
             result
         });

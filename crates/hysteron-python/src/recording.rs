@@ -293,7 +293,7 @@ impl Recording {
         levels: Option<Integer>,
         range: Option<(f64, f64)>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let levels = levels.map_or(Ok(FitOptions::default().levels), |n| n.of("levels"))?;
+        let levels = levels.map_or(Ok(FitOptions::plain().levels), |n| n.convert("levels"))?;
         let plane = match range {
             Some((min, max)) => Plane::new(min, max, levels).raise()?,
             None => hysteron::plane_of(&*self.inner, levels).raise()?,

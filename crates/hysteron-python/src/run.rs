@@ -109,7 +109,7 @@ impl Model {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let array = samples(input, "input")?;
         let samples = array.as_slice()?;
-        let around = Around::of(&self.inner, samples.len(), time, load)?;
+        let around = Around::new(&self.inner, samples.len(), time, load)?;
         let band = detached(py, || self.inner.band_in(samples, around.lent()));
         let (low, high) = band.raise_of("input", samples)?;
         Ok((
@@ -161,7 +161,7 @@ impl Model {
         let begin = self.begin(choice("start", start, &BEGINS)?);
         let array = samples(input, "input")?;
         let samples = array.as_slice()?;
-        let around = Around::of(&self.inner, samples.len(), time, load)?;
+        let around = Around::new(&self.inner, samples.len(), time, load)?;
         let bounds = detached(py, || self.inner.bounds_in(&begin, samples, around.lent()));
         let (low, high) = bounds.raise_of("input", samples)?;
         Ok((

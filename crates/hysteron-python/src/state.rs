@@ -142,7 +142,7 @@ impl State {
         let array = samples(input, "input")?;
         let samples = array.as_slice()?;
         let model = &self.model.inner;
-        let around = Around::of(model, samples.len(), time, load)?;
+        let around = Around::new(model, samples.len(), time, load)?;
         let output = filled(py, samples.len(), |output| {
             let run = |state: &mut hysteron::State| {
                 if model.is_plain() {

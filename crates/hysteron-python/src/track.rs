@@ -132,13 +132,13 @@ impl Comparison {
     /// A PID with the gains that all had; None where no controller has one.
     #[getter]
     fn pid(&self) -> Option<Pid> {
-        self.inner.gains.map(Pid::of)
+        self.inner.gains.map(Pid::from_gains)
     }
 
     /// A PID with the gains of the loop around the temperature; None where there is none.
     #[getter]
     fn inner_pid(&self) -> Option<Pid> {
-        self.inner.inner_gains.map(Pid::of)
+        self.inner.inner_gains.map(Pid::from_gains)
     }
 
     /// Write the table of all scores.
@@ -217,7 +217,7 @@ pub(crate) fn track(
 ) -> PyResult<Comparison> {
     let mut scenario = scenario_of(scenario)?;
     if let Some(seeds) = seeds {
-        scenario.seeds = seeds.of("seeds")?;
+        scenario.seeds = seeds.convert("seeds")?;
     }
     let inner = with_progress(py, progress, |progress| {
         hysteron_sim::track::track(&scenario, progress)
@@ -258,8 +258,8 @@ pub(crate) fn tune(
     let scenario = scenario_of(scenario)?;
     let (scheme, gains) = detached(py, || hysteron_sim::track::tune(&scenario)).raise()?;
     Ok((
-        gains.map(Pid::of),
-        scheme.inner.map(|inner| Pid::of(inner.gains)),
+        gains.map(Pid::from_gains),
+        scheme.inner.map(|inner| Pid::from_gains(inner.gains)),
     ))
 }
 

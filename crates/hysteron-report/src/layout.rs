@@ -25,7 +25,7 @@ pub(crate) struct Layout {
 
 impl Layout {
     /// Draws those figures of `view` whose stems are wanted.
-    pub(crate) fn of<V: Subject>(view: &V, is_wanted: impl Fn(&str) -> bool) -> Self {
+    pub(crate) fn new<V: Subject>(view: &V, is_wanted: impl Fn(&str) -> bool) -> Self {
         let (sections, simulated) = (V::sections(), view.simulated());
         let figures = || sections.iter().flat_map(Section::figures);
         let wanted = figures().filter(|figure| is_wanted(figure.stem));

@@ -58,7 +58,11 @@ pub(crate) fn scripts<'a>(figures: impl Iterator<Item = (&'a str, &'a Drawing)>)
         .map(|(id, drawing)| Linked {
             id,
             plots: &drawing.plots,
-            series: drawing.plots.iter().map(|plot| columns.of(plot)).collect(),
+            series: drawing
+                .plots
+                .iter()
+                .map(|plot| columns.indices(plot))
+                .collect(),
             words: &drawing.words,
             areas: &drawing.areas,
         })
@@ -93,7 +97,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(&mut self, plot: &Plot) -> Vec<[usize; 2]> {
+    fn indices(&mut self, plot: &Plot) -> Vec<[usize; 2]> {
         let lines = plot.lines.iter();
         lines
             .map(|line| [(&line.xs, &plot.x), (&line.ys, &plot.y)])

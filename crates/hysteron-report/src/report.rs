@@ -178,15 +178,15 @@ impl Report<'_> {
                 model,
                 recording,
                 evaluation,
-            } => Layout::of(
+            } => Layout::new(
                 &evaluation::View::new(model, recording, evaluation)?,
                 is_wanted,
             ),
             Shown::Models { recording, models } => {
-                Layout::of(&models::View::new(recording, models)?, is_wanted)
+                Layout::new(&models::View::new(recording, models)?, is_wanted)
             }
-            Shown::Fleet { rows, norm } => Layout::of(&fleet::View::new(rows, norm)?, is_wanted),
-            Shown::Tracking(tracking) => Layout::of(&track::View::new(tracking)?, is_wanted),
+            Shown::Fleet { rows, norm } => Layout::new(&fleet::View::new(rows, norm)?, is_wanted),
+            Shown::Tracking(tracking) => Layout::new(&track::View::new(tracking)?, is_wanted),
         })
     }
 }

@@ -26,7 +26,7 @@ pub(crate) struct Residuals<'a> {
 impl Residuals<'_> {
     /// Draws them over time on a sheet; returns the height taken.
     pub(crate) fn over_time(&self, sheet: &mut Sheet, time: &[f64], label: &Labelled) -> f64 {
-        let x = time_axis(label, Span::of(time.iter()));
+        let x = time_axis(label, Span::covering(time.iter()));
         let (panels, bottom) = self.panels(sheet, &x);
         for (panel, residuals) in panels.iter().zip(self.each) {
             panel.curve(&mut sheet.canvas, time, residuals, &FOLLOWER);
@@ -36,7 +36,7 @@ impl Residuals<'_> {
 
     /// The same over the input.
     pub(crate) fn over_input(&self, sheet: &mut Sheet, input: &[f64], label: &Labelled) -> f64 {
-        let x = Axis::new(label, Span::of(input).padded(0.03));
+        let x = Axis::new(label, Span::covering(input).padded(0.03));
         let (panels, bottom) = self.panels(sheet, &x);
         for (panel, residuals) in panels.iter().zip(self.each) {
             panel.loops(&mut sheet.canvas, input, residuals, &FOLLOWER);
@@ -48,7 +48,7 @@ impl Residuals<'_> {
         let words = format!("modelled − {}", self.recorded);
         sheet.legend(&[Key::Line(FOLLOWER, words)]);
         let all = self.each.iter().flatten();
-        let y = Axis::new(&self.label, Span::of(all).with(0.0).padded(0.06));
+        let y = Axis::new(&self.label, Span::covering(all).with(0.0).padded(0.06));
         let high = height(self.headings.len());
         let (panels, bottom) = stack(sheet, &[], &self.headings, [x, &y], high, [0.0; 2]);
         for panel in &panels {
@@ -59,7 +59,7 @@ impl Residuals<'_> {
 
     /// How often each size occurs.
     pub(crate) fn histogram(&self, sheet: &mut Sheet) -> f64 {
-        let span = Span::of(self.each.iter().flatten()).with(0.0);
+        let span = Span::covering(self.each.iter().flatten()).with(0.0);
         let shares: Vec<[f64; CLASSES]> = self.each.iter().map(|r| shares(r, span)).collect();
         let x = Axis::new(&self.label, span.padded(0.02));
         let percent = Labelled {

@@ -26,7 +26,7 @@ const MOST_LANES: usize = 1 << 24;
 /// let weights = vec![1.0, 0.5, 1.0, 0.0, 0.5, 1.0];
 /// let model = Model::new(Operator::Mkp, plane, weights, 10.0, Sign::Positive)?;
 ///
-/// let mut batch = BatchModel::of(model, 2)?; // one model, two inputs
+/// let mut batch = BatchModel::new(model, 2)?; // one model, two inputs
 /// let inputs = [20.0, 80.0, 50.0, /* lane 1 */ 80.0, 50.0, 80.0];
 /// let mut outputs = [0.0; 6];
 /// batch.run(&inputs, &mut outputs)?;
@@ -79,7 +79,7 @@ impl BatchModel {
     ///
     /// # Errors
     /// [`Error::Fit`] for more than 2²⁴ lanes.
-    pub fn of(model: impl Into<Arc<Model>>, lanes: usize) -> Result<Self> {
+    pub fn new(model: impl Into<Arc<Model>>, lanes: usize) -> Result<Self> {
         if lanes > MOST_LANES {
             return Err(Error::Fit(format!(
                 "{lanes} lanes: a batch has at most {MOST_LANES}"

@@ -24,11 +24,11 @@ impl<'a> Progress<'a> {
     /// No callback.
     pub const NONE: Progress<'static> = Progress(None);
 
-    /// Calls `told` now and then, with the name of the current step and the share of it that is
+    /// Calls `report` now and then, with the name of the current step and the share of it that is
     /// done. The share is from 0 to 1, or NaN if it is not known. Any worker thread may call
-    /// `told`. If it returns an error, the work ends with this error.
-    pub fn new(told: &'a (dyn Fn(&'static str, f64) -> Result<()> + Sync)) -> Self {
-        Self(Some(told))
+    /// `report`. If it returns an error, the work ends with this error.
+    pub fn new(report: &'a (dyn Fn(&'static str, f64) -> Result<()> + Sync)) -> Self {
+        Self(Some(report))
     }
 
     /// Reports progress.
@@ -36,14 +36,14 @@ impl<'a> Progress<'a> {
     /// # Errors
     /// The error that the callback returns.
     pub fn tell(&self, what: &'static str, share: f64) -> Result<()> {
-        self.0.map_or(Ok(()), |told| told(what, share))
+        self.0.map_or(Ok(()), |report| report(what, share))
     }
 }
 
 impl std::fmt::Debug for Progress<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let told = if self.0.is_some() { "told" } else { "NONE" };
-        write!(f, "Progress::{told}")
+        let kind = if self.0.is_some() { "new" } else { "NONE" };
+        write!(f, "Progress::{kind}")
     }
 }
 

@@ -1,6 +1,6 @@
 //! Weights that depend on the load.
 
-use super::resource::{Lines, Parsed};
+use super::lines::{Lines, Parsed};
 use hysteron_core::{MAX_PARTS, Model, Parts};
 
 /// The parts of the weights.

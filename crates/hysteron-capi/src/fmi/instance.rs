@@ -1,8 +1,6 @@
 //! An instance: a block, its state in the standard's state machine, and its run.
 
 use super::block::{Block, Inputs, Outputs, State};
-use super::snapshot::SAVED;
-use super::values::Value;
 use super::{Problem, Result};
 
 /// The states of the standards' state machine that this FMU uses.
@@ -71,7 +69,7 @@ impl Instance {
         Ok((state, outputs))
     }
 
-    fn expect(&self, allowed: &[Phase]) -> Result<()> {
+    pub(super) fn expect(&self, allowed: &[Phase]) -> Result<()> {
         match allowed.contains(&self.run.phase) {
             true => Ok(()),
             false => Err(Problem::new(match self.run.phase {
@@ -143,22 +141,6 @@ impl Instance {
         self.run = Run::new(&self.block)?;
         Ok(())
     }
-
-    /// Sets all of the values or none.
-    pub(crate) fn set<T: Value>(&mut self, values: impl Iterator<Item = (u32, T)>) -> Result<()> {
-        self.expect(&[Phase::Instantiated, Phase::Initialising, Phase::Stepping])?;
-        let mut inputs = self.run.inputs;
-        for (reference, value) in values {
-            value.set(&mut inputs, &self.block, reference)?;
-        }
-        if self.run.phase == Phase::Stepping && inputs.start_on != self.run.inputs.start_on {
-            return Err(Problem::new(
-                "`start_on` acts at the start: it is fixed from there on",
-            ));
-        }
-        self.run.inputs = inputs;
-        Ok(())
-    }
 }
 
 impl Run {
@@ -176,15 +158,6 @@ impl Run {
             outputs,
             state: block.start(false)?,
         })
-    }
-}
-
-impl Drop for Instance {
-    fn drop(&mut self) {
-        for handle in self.saved.drain(..) {
-            // A state that was freed already needs nothing.
-            let _ = SAVED.remove(handle, "state");
-        }
     }
 }
 

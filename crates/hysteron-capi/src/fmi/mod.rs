@@ -16,6 +16,7 @@ mod calls;
 pub mod fmi2;
 pub mod fmi3;
 mod instance;
+mod lines;
 mod location;
 mod logger;
 mod resource;

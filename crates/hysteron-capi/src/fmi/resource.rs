@@ -52,11 +52,11 @@
 
 use super::block::{Block, Kind};
 use super::by_load::ByLoad;
+use super::lines::{Fault, Lines, Parsed};
 use super::stages::{Constants, More};
 use super::{Problem, Result, checksum};
 use hysteron_core::{Model, Operator, Plane, operator_count, table_len};
 use std::path::Path;
-use std::str::FromStr;
 
 const FILE: &str = "model.txt";
 const HEAD: &str = "hysteron-fmu 1";
@@ -87,76 +87,6 @@ fn content(path: &Path) -> std::io::Result<Vec<u8>> {
     std::fs::read(path)
 }
 
-#[derive(Debug)]
-pub(crate) struct Fault {
-    line: usize,
-    problem: String,
-}
-
-pub(crate) type Parsed<T> = std::result::Result<T, Fault>;
-
-/// Lines with their numbers.
-pub(crate) struct Lines<'a> {
-    lines: std::str::Split<'a, char>,
-    line: usize,
-}
-
-impl<'a> Lines<'a> {
-    pub(crate) fn fault<T>(&self, problem: impl Into<String>) -> Parsed<T> {
-        Err(Fault {
-            line: self.line,
-            problem: problem.into(),
-        })
-    }
-
-    fn next(&mut self) -> Parsed<&'a str> {
-        self.line += 1;
-        match self.lines.next() {
-            Some(line) => Ok(line),
-            None => self.fault("the file ends here"),
-        }
-    }
-
-    /// The words after `key` on the next line, which has to have this number of them.
-    fn entry<const N: usize>(&mut self, key: &str) -> Parsed<[&'a str; N]> {
-        let line = self.next()?;
-        let words: Option<Vec<&str>> = line
-            .strip_prefix(key)
-            .and_then(|rest| rest.strip_prefix(' '))
-            .map(|rest| rest.split(' ').collect());
-        match words.and_then(|words| words.try_into().ok()) {
-            Some(words) => Ok(words),
-            None => self.fault(format!("`{key}` and {N} value(s) are expected")),
-        }
-    }
-
-    /// The numbers after `key` on the next line, as many as there are.
-    pub(crate) fn numbers(&mut self, key: &str) -> Parsed<Vec<f64>> {
-        let line = self.next()?;
-        let Some(rest) = line.strip_prefix(key) else {
-            return self.fault(format!("`{key}` is expected"));
-        };
-        let mut words = rest.split(' ');
-        match words.next() {
-            Some("") => words.map(|word| self.finite(word)).collect(),
-            _ => self.fault(format!("`{key}` is expected")),
-        }
-    }
-
-    fn number<T: FromStr>(&self, word: &str) -> Parsed<T> {
-        word.parse()
-            .or_else(|_| self.fault(format!("`{word}` is no number that can stand here")))
-    }
-
-    fn finite(&self, word: &str) -> Parsed<f64> {
-        let number: f64 = self.number(word)?;
-        match number.is_finite() {
-            true => Ok(number),
-            false => self.fault(format!("{number} is not a finite number")),
-        }
-    }
-}
-
 fn parse(bytes: &[u8]) -> Parsed<Block> {
     let text = std::str::from_utf8(bytes).map_err(|error| Fault {
         line: 1 + bytes[..error.valid_up_to()]
@@ -165,10 +95,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
             .count(),
         problem: "this is not UTF-8".into(),
     })?;
-    let mut lines = Lines {
-        lines: text.split('\n'),
-        line: 0,
-    };
+    let mut lines = Lines::new(text);
     let head = lines.next()?;
     let by_load = HEAD_PARTS.contains(&head);
     if !(head == HEAD || by_load || HEAD_STAGES.contains(&head)) {

@@ -25,6 +25,15 @@ impl Saved {
     }
 }
 
+impl Drop for Instance {
+    fn drop(&mut self) {
+        for handle in self.saved.drain(..) {
+            // A state that was freed already needs nothing.
+            let _ = SAVED.remove(handle, "state");
+        }
+    }
+}
+
 impl Instance {
     /// Saves the run, over an older one where `handle` is not 0.
     pub(crate) fn save(&mut self, handle: u64) -> Result<u64> {

@@ -1,7 +1,7 @@
 //! The stages around the operators of a block.
 
-use super::resource::{Lines, Parsed};
-use hysteron_core::{Error, Stages};
+use super::lines::{Lines, Parsed};
+use hysteron_core::{Constant, Error, Stages};
 
 /// Their constants.
 #[derive(Debug)]
@@ -25,22 +25,6 @@ impl Constants {
     }
 }
 
-/// How many constants the body has. They have one line.
-const BODY: usize = 4;
-
-/// The constants that have a line in every version, and what the line is called.
-const VERSION_2: [(&str, &str); 9] = [
-    ("loads", "loads"),
-    ("shifts", "shifts"),
-    ("scales", "scales"),
-    ("gains", "gains"),
-    ("offsets", "offsets"),
-    ("spacing", "spacing"),
-    ("creep", "creep"),
-    ("creep_taus", "taus"),
-    ("lag", "lag"),
-];
-
 /// What a model's text of version 2 has more.
 pub(crate) struct More {
     pub(crate) first: (f64, f64),
@@ -59,9 +43,12 @@ impl More {
             [] => None,
             [input, points @ ..] => Some((points.to_vec(), *input)),
         };
+        let constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
+        let (of_body, others): (Vec<&Constant>, Vec<&Constant>) =
+            constants.partition(|constant| constant.line_of_version_2() == Some("body"));
         let body = lines.numbers("body")?;
-        if !(body.is_empty() || body.len() == BODY) {
-            return lines.fault(format!("`body` and {BODY} numbers are expected"));
+        if !(body.is_empty() || body.len() == of_body.len()) {
+            return lines.fault(format!("`body` and {} numbers are expected", of_body.len()));
         }
         let drive = match lines.numbers("drive")?[..] {
             [] => (f64::NEG_INFINITY, f64::INFINITY),
@@ -69,12 +56,10 @@ impl More {
             _ => return lines.fault("`drive` and 2 numbers in order are expected"),
         };
         let single = |n: usize| body.get(n).map_or(Vec::new(), |number| vec![*number]);
-        let mut lists: Vec<Vec<f64>> = (0..BODY).map(single).collect();
-        let constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
-        for constant in constants.skip(BODY) {
-            let of_version_2 = VERSION_2.iter().find(|(name, _)| *name == constant.name);
-            lists.push(match of_version_2 {
-                Some((_, line)) => lines.numbers(line)?,
+        let mut lists: Vec<Vec<f64>> = (0..of_body.len()).map(single).collect();
+        for constant in others {
+            lists.push(match constant.line_of_version_2() {
+                Some(line) => lines.numbers(line)?,
                 None if whole => lines.numbers(constant.name)?,
                 None => Vec::new(),
             });

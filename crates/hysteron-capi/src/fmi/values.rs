@@ -1,7 +1,7 @@
 //! The variables of a block by their value references, as in the FMU's description.
 
 use super::block::{Block, Inputs, Kind};
-use super::instance::Instance;
+use super::instance::{Instance, Phase};
 use super::{Problem, Result};
 
 const TIME: u32 = 0;
@@ -98,6 +98,24 @@ impl Value for bool {
             START_ON => inputs.start_on = self,
             _ => return unknown("boolean", reference),
         }
+        Ok(())
+    }
+}
+
+impl Instance {
+    /// Sets all of the values or none.
+    pub(crate) fn set<T: Value>(&mut self, values: impl Iterator<Item = (u32, T)>) -> Result<()> {
+        self.expect(&[Phase::Instantiated, Phase::Initialising, Phase::Stepping])?;
+        let mut inputs = self.run.inputs;
+        for (reference, value) in values {
+            value.set(&mut inputs, &self.block, reference)?;
+        }
+        if self.run.phase == Phase::Stepping && inputs.start_on != self.run.inputs.start_on {
+            return Err(Problem::new(
+                "`start_on` acts at the start: it is fixed from there on",
+            ));
+        }
+        self.run.inputs = inputs;
         Ok(())
     }
 }

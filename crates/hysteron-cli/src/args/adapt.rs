@@ -1,7 +1,7 @@
 //! Options of `adapt`.
 
+use super::common::{Force, Json, Repair};
 use super::value::*;
-use super::{Force, Json, Repair};
 use clap::Args;
 use std::path::PathBuf;
 

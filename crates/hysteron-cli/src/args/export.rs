@@ -1,6 +1,7 @@
 //! Arguments of `hysteron export`.
 
-use super::{Force, Json, parse_limits};
+use super::common::{Force, Json};
+use super::value::parse_limits;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! Options of `fit` and `prepare`.
 
+use super::common::{Force, Json, Repair};
 use super::value::*;
-use super::{Force, Json, Repair};
 use clap::Args;
 use hysteron::Step;
 use std::path::PathBuf;

@@ -1,6 +1,7 @@
 //! Arguments of `hysteron fleet`.
 
-use super::{FitHow, Force, Json};
+use super::common::{Force, Json};
+use super::fit::FitHow;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 

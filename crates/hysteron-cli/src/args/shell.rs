@@ -1,6 +1,6 @@
 //! Options of `completions` and `man`.
 
-use super::Force;
+use super::common::Force;
 use clap::Args;
 use clap_complete::Shell;
 use std::path::PathBuf;

@@ -1,8 +1,9 @@
 //! Options of `studio` and `start`.
 
-use super::{Force, Json, Repair};
 #[cfg(feature = "studio")]
-use super::{Memory, up_to};
+use super::common::Memory;
+use super::common::{Force, Json, Repair};
+use super::value::up_to;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -16,6 +16,7 @@ mod least_squares;
 mod memory;
 mod operators;
 mod options;
+mod outcome;
 mod parameters;
 mod shift;
 mod shift_options;
@@ -26,9 +27,9 @@ mod watch;
 
 pub use estimator::Estimator;
 pub use gate::{Gate, Verdict};
-pub use learning::{Learning, Outcome};
 pub use memory::{estimator_len, estimator_len_of_basis};
 pub use options::{Adaptation, Method};
+pub use outcome::{Learning, Outcome};
 pub use shift::ShiftEstimator;
 pub use shift_options::ShiftOptions;
 pub use watch::{Channel, Reading, Watch, Watched};

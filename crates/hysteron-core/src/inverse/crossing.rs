@@ -10,16 +10,8 @@ use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::relay;
 use crate::scalar::Real;
-use crate::search::{Branch, Goal, along, ceil_index, first_true};
+use crate::search::{Branch, Goal, Landing, along, ceil_index, first_true};
 use crate::state::State;
-
-/// Where a way ends.
-pub(crate) struct Landing<T> {
-    /// The input, in its unit.
-    pub(crate) input: T,
-    /// `Σ μ γ` there.
-    pub(crate) output: T,
-}
 
 impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The first input on the way up at which the output meets `goal`.
@@ -81,7 +73,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             table: self.model.table(),
             levels,
         };
-        grid.everett(Split::of(max, levels), Split::of(min, levels))
+        grid.everett(Split::new(max, levels), Split::new(min, levels))
     }
 
     /// The first `x` from `start` up at which `e(x, min)` meets `goal`; `K` if there is none.
@@ -90,7 +82,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     fn climb(&self, min: T, start: T, goal: Goal<T>) -> T {
         let levels = self.model.plane().levels();
         let table = self.model.table();
-        let Split { cell: q, part: v } = Split::of(min, levels);
+        let Split { cell: q, part: v } = Split::new(min, levels);
         let at = |p: usize| {
             let n = table_index(p, q);
             if p > q {
@@ -101,7 +93,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         };
         // The first grid line beyond `start` that meets the goal: the crossing is in the cell
         // before it.
-        let first = Split::of(start, levels).cell + 1;
+        let first = Split::new(start, levels).cell + 1;
         let Some(row) = first_true(first, levels, |p| goal.met_rising(at(p))) else {
             return T::from_index(levels);
         };
@@ -133,12 +125,12 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     fn descend(&self, max: T, start: T, goal: Goal<T>) -> T {
         let levels = self.model.plane().levels();
         let table = self.model.table();
-        let Split { cell: p, part: u } = Split::of(max, levels);
+        let Split { cell: p, part: u } = Split::new(max, levels);
         let at = |q: usize| {
             let (near, below) = (table[table_index(p, q)], table[table_index(p + 1, q)]);
             near + u * (below - near)
         };
-        let last = Split::of(start, levels).cell;
+        let last = Split::new(start, levels).cell;
         // The first grid line from `last` down to 0 that meets the goal.
         let Some(steps) = first_true(0, last, |n| goal.met_rising(at(last - n))) else {
             return T::ZERO;

@@ -15,13 +15,12 @@ mod crossing;
 
 use crate::branch::Turn;
 use crate::error::Error;
-use crate::inverse::crossing::Landing;
 use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
 use crate::relay;
 use crate::scalar::Real;
-use crate::search::{Goal, within};
+use crate::search::{Goal, Landing, within};
 use crate::solution::{Solution, Status};
 use crate::state::State;
 use crate::target::{Direction, Target};

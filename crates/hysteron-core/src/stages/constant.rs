@@ -29,6 +29,22 @@ pub struct Constant {
     pub meaning: &'static str,
 }
 
+impl Constant {
+    /// The line in an FMU's text of version 2 that holds this constant. Those of the body share one.
+    /// `None` for a constant that this version does not have.
+    #[must_use]
+    pub fn line_of_version_2(&self) -> Option<&'static str> {
+        match self.name {
+            "ambient" | "gain" | "tau_heating" | "tau_cooling" => Some("body"),
+            "creep_taus" => Some("taus"),
+            "loads" | "shifts" | "scales" | "gains" | "offsets" | "spacing" | "creep" | "lag" => {
+                Some(self.name)
+            }
+            _ => None,
+        }
+    }
+}
+
 /// The unit of a constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {

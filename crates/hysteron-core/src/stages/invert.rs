@@ -8,8 +8,9 @@ use crate::operator::Operator;
 use crate::scalar::Real;
 use crate::solution::{Solution, Status};
 use crate::stages::axis::Loaded;
-use crate::stages::chain::{Rates, StageState, Stages, factors};
+use crate::stages::chain::{Stages, factors};
 use crate::stages::constant::thousandth;
+use crate::stages::state::{Rates, StageState};
 use crate::state::State;
 use crate::target::{Direction, Target};
 

@@ -1,58 +1,11 @@
 //! A model in the number type of the target.
 
+use super::real::{Number, unfit};
 use super::rounding::missed;
 use super::stages::{CSampling, Staged};
-use super::{CMemory, CReal};
-use hysteron::{Error, Model, Operator, Remedy, Result, Setting, Sign};
+use super::written::CMemory;
+use hysteron::{Model, Operator, Result, Sign};
 use hysteron_core::{Plane, RATE_NUMBERS, Real, STATE_NUMBERS, table_len, turn_capacity};
-
-/// A number type of C.
-pub(super) trait Number: Real {
-    /// Its size and alignment.
-    const BYTES: usize;
-    /// Its name in C.
-    const REAL: CReal;
-    /// [`Real::EPSILON`].
-    const DISTANCE: f64;
-    /// The smallest number that has all its digits.
-    const SMALLEST: Self;
-    /// The nearest number; none where digits are lost beyond that: too large, or too small to be
-    /// exact.
-    fn of(number: f64) -> Option<Self>;
-    /// As C reads it back to the same bits.
-    fn literal(self) -> String;
-}
-
-impl Number for f32 {
-    const BYTES: usize = 4;
-    const REAL: CReal = CReal::Float;
-    const DISTANCE: f64 = f32::EPSILON as f64;
-    const SMALLEST: Self = f32::MIN_POSITIVE;
-
-    fn of(number: f64) -> Option<Self> {
-        let near = number as f32;
-        (near.is_normal() || number == 0.0).then_some(near)
-    }
-
-    fn literal(self) -> String {
-        format!("{self:?}f")
-    }
-}
-
-impl Number for f64 {
-    const BYTES: usize = 8;
-    const REAL: CReal = CReal::Double;
-    const DISTANCE: f64 = f64::EPSILON;
-    const SMALLEST: Self = 0.0;
-
-    fn of(number: f64) -> Option<Self> {
-        Some(number)
-    }
-
-    fn literal(self) -> String {
-        format!("{self:?}")
-    }
-}
 
 /// What the C needs of a model, all of it computed by the core in that type.
 pub(super) struct Constants<T> {
@@ -71,9 +24,9 @@ pub(super) struct Constants<T> {
 }
 
 impl<T: Number> Constants<T> {
-    pub(super) fn of(model: &Model, sampling: &CSampling) -> Result<Self> {
+    pub(super) fn new(model: &Model, sampling: &CSampling) -> Result<Self> {
         let convert = |what: &str, number: f64| {
-            T::of(number).ok_or_else(|| unfit(&format!("{what} of {number:e}")))
+            T::nearest(number).ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
         let plane = model.plane();
         let (min, max) = (
@@ -100,7 +53,7 @@ impl<T: Number> Constants<T> {
         let start = model.fitted().map(|state| -> Result<_> {
             // A position so small that the type does not have it is at the bottom.
             let points = state.turning_points();
-            let points = points.map(|x| T::of(x).unwrap_or(T::ZERO)).collect();
+            let points = points.map(|x| T::nearest(x).unwrap_or(T::ZERO)).collect();
             Ok((points, convert("an input", state.input())?))
         });
         let mut constants = Self {
@@ -113,7 +66,8 @@ impl<T: Number> Constants<T> {
             stages: None,
             start: start.transpose()?,
         };
-        constants.stages = Staged::of(model, &constants, sampling)?;
+        let offset_and_sign = (constants.offset, constants.falls);
+        constants.stages = Staged::new(model, &constants.core, offset_and_sign, sampling)?;
         if constants.stages.as_ref().is_some_and(Staged::is_negative) {
             constants.rounding = None;
         }
@@ -170,7 +124,7 @@ impl<T: Number> Constants<T> {
             Some(staged) => (
                 {
                     let lists = 1 + staged.arrays().count();
-                    let core = staged.core(self);
+                    let core = staged.core();
                     let numbers = 9 + RATE_NUMBERS + core.behind.slopes().count();
                     aligned(aligned((3 + 2 * lists) * WORD) + numbers * T::BYTES + 3)
                 } + staged
@@ -215,10 +169,4 @@ impl<T: Number> Constants<T> {
         let operators = self.weights.len();
         self.table().len() + 5 * (operators + 1) + operators
     }
-}
-
-pub(super) fn unfit(what: &str) -> Error {
-    let double = Setting::word("real", CReal::Double.name());
-    let what = format!("{what} does not fit single precision");
-    Error::Export(what).remedied(Remedy::new("export with {}", [double]))
 }

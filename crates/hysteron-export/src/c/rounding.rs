@@ -1,7 +1,6 @@
 //! By how much a target may be missed that the C reports as reached, in the unit of the output.
 
-use super::CReal;
-use super::constants::{Number, unfit};
+use super::real::{CReal, Number, unfit};
 use super::stages::CSampling;
 use hysteron::{Error, Model, Operator, Result};
 use hysteron_core::{Stages, operator_index};
@@ -25,11 +24,11 @@ pub(super) fn missed<T: Number>(model: &Model, sampling: &CSampling) -> Result<f
     let load = stages.axis.load;
     let of_load = most(load.gains, 1.0);
     let gain = of_load * stages.behind.steepest_at_rest();
-    let Slopes { total, steepest } = Slopes::of(model);
+    let Slopes { total, steepest } = Slopes::new(model);
     let (low, high) = model.output_range();
     let offset = most(load.offsets, 0.0);
     let target = low.abs().max(high.abs()) + offset;
-    let axis = Axis::of(model, &stages, sampling);
+    let axis = Axis::new(model, &stages, sampling);
     let of_digits = 4.0 * epsilon * gain * total;
     let of_stages = stages.behind.size();
     let of_offsets = 8.0 * epsilon * (model.offset().abs() + offset + target + of_stages);
@@ -77,7 +76,7 @@ struct Slopes {
 }
 
 impl Slopes {
-    fn of(model: &Model) -> Self {
+    fn new(model: &Model) -> Self {
         let own = [model.weights()];
         let parts: Vec<&[f64]> = match model.load.as_ref().map(|load| load.parts()) {
             Some(parts) if parts.len() > 1 => parts.iter().map(|part| &*part.weights).collect(),
@@ -118,7 +117,7 @@ struct Axis {
 }
 
 impl Axis {
-    fn of(model: &Model, stages: &Stages<'_, f64>, sampling: &CSampling) -> Self {
+    fn new(model: &Model, stages: &Stages<'_, f64>, sampling: &CSampling) -> Self {
         let plane = model.plane();
         let magnitude = |ends: [f64; 2]| ends[0].abs().max(ends[1].abs());
         let load = stages.axis.load;

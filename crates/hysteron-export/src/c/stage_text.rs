@@ -1,9 +1,10 @@
 //! The stages and the start of a model as C.
 
-use super::CExport;
-use super::constants::{Constants, Number};
+use super::constants::Constants;
+use super::notation::{list, quantity};
+use super::real::Number;
 use super::stages::Staged;
-use super::text::{list, quantity};
+use super::written::CExport;
 use hysteron::Model;
 use std::fmt::Write;
 
@@ -108,7 +109,7 @@ pub(super) fn actuator<T: Number>(
         "NULL"
     };
     let _ = writeln!(text, "    .parts = {parts},");
-    let core = staged.core(constants);
+    let core = staged.core();
     let each = core.behind.there().enumerate();
     let bits = each.map(|(n, (_, there))| u32::from(there) << n);
     let _ = writeln!(text, "    .there = {},", bits.sum::<u32>());

@@ -1,8 +1,8 @@
 //! The stages of a model in the number type of the target, at a fixed sample time.
 
-use super::constants::{Constants, Number, unfit};
+use super::real::{Number, unfit};
 use hysteron::{Error, Model, Remedy, Result, Setting, StageConstants};
-use hysteron_core::{Constant, MAX_PARTS, RATE_NUMBERS, Range, Real, Stages, table_len};
+use hysteron_core::{Constant, MAX_PARTS, Plane, RATE_NUMBERS, Range, Real, Stages, table_len};
 
 /// How a model with stages runs on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,13 +42,17 @@ pub(super) struct Staged<T> {
     pub(super) drive: Option<(T, T)>,
     /// `None` where the weights do not depend on the load.
     pub(super) parts: Option<Parts<T>>,
+    /// Offset and sign of the output.
+    offset: T,
+    falls: bool,
 }
 
 impl<T: Number> Staged<T> {
     /// `None` for a model without a stage.
-    pub(super) fn of(
+    pub(super) fn new(
         model: &Model,
-        constants: &Constants<T>,
+        operators: &hysteron_core::Model<T, Vec<T>>,
+        (offset, falls): (T, bool),
         sampling: &CSampling,
     ) -> Result<Option<Self>> {
         let bare = model.is_plain() || {
@@ -61,7 +65,7 @@ impl<T: Number> Staged<T> {
             return Ok(None);
         }
         let number = |what: &str, number: f64| {
-            let near = T::of(number).filter(|near| near.is_finite());
+            let near = T::nearest(number).filter(|near| near.is_finite());
             near.ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
         let drive = match (sampling.drive, model.thermal) {
@@ -81,17 +85,19 @@ impl<T: Number> Staged<T> {
             size: T::ZERO,
             steepest: T::ONE,
             drive,
-            parts: Parts::of(model, constants)?,
+            parts: Parts::new(model, *operators.plane())?,
+            offset,
+            falls,
         };
-        let core = staged.core(constants);
-        core.check(&constants.core)
+        let core = staged.core();
+        core.check(operators)
             .map_err(|error| unfit(&error.to_string()))?;
         let (gain, size) = (core.behind.steepest_at_rest(), core.behind.size());
         let rates = match sampling.dt {
             Some(dt) => core.rates(number("a sample time", dt)?).to_numbers(),
             None => staged.rates,
         };
-        let step = constants.core.plane().step();
+        let step = operators.plane().step();
         let corners = core.axis.spacing.windows(2);
         let slopes = corners.map(|pair| step / (pair[1] - pair[0]));
         let steepest = slopes.reduce(Real::max).unwrap_or(T::ONE);
@@ -101,10 +107,10 @@ impl<T: Number> Staged<T> {
     }
 
     /// The stages as the core takes them.
-    pub(super) fn core(&self, constants: &Constants<T>) -> Stages<'_, T> {
+    pub(super) fn core(&self) -> Stages<'_, T> {
         Stages {
-            offset: constants.offset,
-            falling: constants.falls,
+            offset: self.offset,
+            falling: self.falls,
             ..self.constants.stages()
         }
     }
@@ -149,7 +155,7 @@ impl<T: Number> Staged<T> {
 }
 
 impl<T: Number> Parts<T> {
-    fn of(model: &Model, constants: &Constants<T>) -> Result<Option<Self>> {
+    fn new(model: &Model, plane: Plane<T>) -> Result<Option<Self>> {
         let Some(load) = model.load.as_ref().filter(|load| load.parts().len() > 1) else {
             return Ok(None);
         };
@@ -161,10 +167,9 @@ impl<T: Number> Parts<T> {
             return Err(Error::Export(what).remedied(remedy));
         }
         let number = |what: &str, number: f64| {
-            let near = T::of(number).filter(|near| near.is_finite());
+            let near = T::nearest(number).filter(|near| near.is_finite());
             near.ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
-        let plane = *constants.core.plane();
         let (low, high) = load.range();
         let mut parts = Self {
             tables: Vec::new(),

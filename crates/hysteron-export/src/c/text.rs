@@ -1,15 +1,15 @@
 //! The files that hold a model.
 
-use super::constants::{Constants, Number};
+use super::algorithm::{ALGORITHM, STAGES};
+use super::constants::Constants;
+use super::notation::{array, plain, quantity};
+use super::real::Number;
 use super::stage_text::{actuator, remarks, start_declared, start_defined};
-use super::{ALGORITHM, CExport, STAGES};
-use hysteron::{Model, Operator, Quantity, Sign};
+use super::written::CExport;
+use hysteron::{Model, Operator, Sign};
 use hysteron_core::{operator_index, table_index, table_len, turn_capacity};
 use std::fmt::Write;
 use std::path::Path;
-
-/// Numbers in a line of the table.
-const COLUMNS: usize = 8;
 
 /// Declares the model, and says what it is.
 pub(super) fn header<T: Number>(
@@ -215,39 +215,4 @@ static const hys_real table[] = ",
         let _ = write!(text, "\nconst hys_real {name}_weights[] = {}", array(rows));
     }
     text
-}
-
-/// The rows of a triangle as one array's value.
-fn array<'a, T: Number + 'a>(rows: impl Iterator<Item = &'a [T]>) -> String {
-    let lines = rows.flat_map(|row| row.chunks(COLUMNS)).map(|line| {
-        let numbers: Vec<String> = line.iter().map(|number| number.literal()).collect();
-        format!("    {}", numbers.join(", "))
-    });
-    let lines: Vec<String> = lines.collect();
-    format!("{{\n{}\n}};\n", lines.join(",\n"))
-}
-
-/// Numbers as an array's value.
-pub(super) fn list<T: Number>(numbers: &[T]) -> String {
-    array(std::iter::once(numbers))
-}
-
-pub(super) fn quantity(quantity: &Quantity) -> String {
-    let unit = quantity.unit.as_deref().unwrap_or("unit not known");
-    format!("{} [{}]", plain(&quantity.name), plain(unit))
-}
-
-/// Text that stays within a comment, for compilers that read ASCII only.
-fn plain(text: &str) -> String {
-    let mut plain = String::new();
-    for letter in text.chars() {
-        match letter {
-            '°' => plain.push_str("deg"),
-            'µ' | 'μ' => plain.push('u'),
-            '*' | '·' => plain.push('.'),
-            ' '..='~' if letter != '\\' => plain.push(letter),
-            _ => plain.push('?'),
-        }
-    }
-    plain
 }

@@ -5,7 +5,7 @@ use super::staged;
 use hysteron::{Model, Operator, Result, Sign};
 use std::fmt::Write;
 
-pub(super) fn of(model: &Model, inverse: bool, token: &str) -> Result<String> {
+pub(super) fn write(model: &Model, inverse: bool, token: &str) -> Result<String> {
     let plane = model.plane();
     let (min, max, levels) = (plane.min(), plane.max(), plane.levels());
     let block = if inverse { "inverse" } else { "forward" };

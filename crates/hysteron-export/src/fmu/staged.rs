@@ -61,29 +61,12 @@ pub(super) fn first_target(model: &Model) -> Result<f64> {
     Ok(model.step(&mut model.start(), sample)?.output)
 }
 
-/// The constants of the body, which have one line.
-const BODY: [&str; 4] = ["ambient", "gain", "tau_heating", "tau_cooling"];
-
-/// The constants that have a line in every version, and what the line is called.
-const VERSION_2: [(&str, &str); 9] = [
-    ("loads", "loads"),
-    ("shifts", "shifts"),
-    ("scales", "scales"),
-    ("gains", "gains"),
-    ("offsets", "offsets"),
-    ("spacing", "spacing"),
-    ("creep", "creep"),
-    ("creep_taus", "taus"),
-    ("lag", "lag"),
-];
-
 /// Whether the model has constants of stages that version 2 and 3 have no lines for.
 pub(super) fn has_others(model: &Model) -> bool {
-    let known = |name: &str| BODY.contains(&name) || VERSION_2.iter().any(|(k, _)| *k == name);
     let constants = model.constants();
     let mut others = constants
         .iter()
-        .filter(|(constant, _)| !known(constant.name));
+        .filter(|(constant, _)| constant.line_of_version_2().is_none());
     others.any(|(_, numbers)| !numbers.is_empty())
 }
 
@@ -98,7 +81,7 @@ pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
     });
     let (in_body, others): (Vec<_>, Vec<_>) = constants
         .iter()
-        .partition(|(constant, _)| BODY.contains(&constant.name));
+        .partition(|(constant, _)| constant.line_of_version_2() == Some("body"));
     let body: Vec<f64> = in_body
         .into_iter()
         .flat_map(|(_, list)| list)
@@ -117,8 +100,7 @@ pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
     ];
     let whole = has_others(model);
     entries.extend(others.into_iter().filter_map(|(constant, numbers)| {
-        let of_version_2 = VERSION_2.iter().find(|(name, _)| *name == constant.name);
-        let line = of_version_2.map(|(_, line)| *line);
+        let line = constant.line_of_version_2();
         let numbers = match (constant.name, numbers) {
             ("lag", []) => vec![0.0],
             _ => numbers.to_vec(),

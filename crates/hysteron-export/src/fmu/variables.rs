@@ -32,7 +32,7 @@ const SIGN: (Option<&str>, Option<&str>) = (Some("-1"), Some("1"));
 const STATUS: (Option<&str>, Option<&str>) = (Some("-1"), Some("3"));
 
 /// All of a block, in the order of the description.
-pub(super) fn of(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
+pub(super) fn all(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
     let (low, high) = model.active_range();
     let active = match model.thermal {
         None => format!("active from {low} to {high}"),
@@ -286,7 +286,7 @@ mod tests {
             Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive).unwrap();
         model.input.name = input.into();
         model.output.name = output.into();
-        of(&model, false)
+        all(&model, false)
             .unwrap()
             .into_iter()
             .map(|v| v.name)

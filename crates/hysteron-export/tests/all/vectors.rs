@@ -15,7 +15,7 @@ struct Run {
     expected: Vec<f64>,
     statuses: Vec<i64>,
     /// How far a target may go back, which the output may miss it by.
-    slack: f64,
+    tolerance: f64,
 }
 
 struct File {
@@ -43,10 +43,10 @@ fn files() -> Vec<File> {
         }
         let forward = file["kind"] == "forward";
         let runs = file["runs"].as_array().unwrap().iter().map(|run| {
-            let slack = run["tolerance"].as_f64().unwrap_or(0.0);
+            let tolerance = run["tolerance"].as_f64().unwrap_or(0.0);
             let (input, target) = (numbers(&run["input"]), numbers(&run["target"]));
             let heading = numbers(&run["heading"]);
-            let inverse = |(&y, &way): (&f64, &f64)| Call::Inverse(y, way as i32, slack);
+            let inverse = |(&y, &way): (&f64, &f64)| Call::Inverse(y, way as i32, tolerance);
             Run {
                 name: run["name"].as_str().unwrap().to_owned(),
                 calls: match forward {
@@ -59,7 +59,7 @@ fn files() -> Vec<File> {
                     input
                 },
                 statuses: numbers(&run["status"]).iter().map(|&s| s as i64).collect(),
-                slack,
+                tolerance,
             }
         });
         files.push(File {
@@ -173,7 +173,7 @@ fn in_float() {
             };
             assert_eq!(statuses[n], Some(run.statuses[n]), "{what}, sample {n}");
             if run.statuses[n] == 0 {
-                let error = (output - target).abs() - run.slack;
+                let error = (output - target).abs() - run.tolerance;
                 assert!(
                     error <= tolerance,
                     "{what}, sample {n}: {error:e}, allowed {tolerance:e}"

@@ -17,7 +17,7 @@ struct Run {
     expected: Vec<f64>,
     statuses: Vec<i64>,
     /// How far a target may be missed.
-    slack: f64,
+    tolerance: f64,
 }
 
 struct File {
@@ -41,12 +41,12 @@ fn step(run: &Value) -> Option<f64> {
 
 fn read_run(run: &Value) -> Run {
     let count = run["input"].as_array().unwrap().len();
-    let slack = run["tolerance"].as_f64().unwrap_or(0.0);
+    let tolerance = run["tolerance"].as_f64().unwrap_or(0.0);
     let load = numbers(&run["load"]).unwrap_or(vec![0.0; count]);
     let input = numbers(&run["input"]).unwrap();
     let calls = match (numbers(&run["target"]), numbers(&run["heading"])) {
         (Some(target), Some(heading)) => (0..count)
-            .map(|n| Call::Inverse(target[n], heading[n] as i32, slack, load[n]))
+            .map(|n| Call::Inverse(target[n], heading[n] as i32, tolerance, load[n]))
             .collect(),
         _ => (0..count).map(|n| Call::Step(input[n], load[n])).collect(),
     };
@@ -56,7 +56,7 @@ fn read_run(run: &Value) -> Run {
         calls,
         expected: numbers(&run["output"]).unwrap_or(input),
         statuses: statuses.iter().map(|&s| s as i64).collect(),
-        slack,
+        tolerance,
     }
 }
 
@@ -132,7 +132,7 @@ fn check<T: Number>(file: &File, run: &Run, found: &[(f64, Option<i64>)], real: 
                     load: model.load.as_ref().map(|_| *load),
                 };
                 let output = model.step(&mut state, sample).unwrap().output;
-                let missed = (output - target).abs() - run.slack;
+                let missed = (output - target).abs() - run.tolerance;
                 (if status == Some(0) { missed } else { 0.0 }, single)
             }
             (CReal::Float, _) => (error, single),

@@ -64,7 +64,7 @@ impl Method {
                 let options = FitOptions {
                     levels: LEVELS,
                     ridge: 0.0,
-                    ..FitOptions::default()
+                    ..FitOptions::plain()
                 };
                 fitted(&options.into(), split).map(Some)
             }
@@ -72,7 +72,7 @@ impl Method {
                 let options = FitOptions {
                     operator: Operator::Relay,
                     levels,
-                    ..FitOptions::default()
+                    ..FitOptions::plain()
                 };
                 fitted(&options.into(), split).map(Some)
             }
@@ -99,7 +99,7 @@ impl Method {
 /// A model of this crate. It starts the test as its fit started.
 fn fitted(fit: &Fit<'_>, split: &Split) -> Result<Vec<f64>> {
     let model = fit.run(&split.training)?;
-    let around = Surroundings::of(&model, &split.test);
+    let around = Surroundings::from_recording(&model, &split.test);
     Ok(model.simulate_in(&split.test.input, around)?)
 }
 

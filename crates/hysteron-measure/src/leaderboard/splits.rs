@@ -1,6 +1,6 @@
 //! What is fitted and what is predicted: fixed, and the same for every method.
 
-use super::cycles::cycles;
+use crate::cycles::cycles;
 use crate::genuine;
 use crate::result::Result;
 use hysteron::{Columns, Recording, Repair, branches, usual_tolerance};
@@ -173,7 +173,7 @@ fn loads(folder: &Path) -> Result<Vec<Set>> {
 fn thermal_cycles(folder: &Path) -> Result<Vec<Set>> {
     // Its times repeat, because they were rounded.
     let columns = Columns::new("temperature_C", "extension_mm");
-    let cycles = cycles(&read(folder, "sma_isobaric_cycles_1_to_4.csv", columns)?)?;
+    let (_, cycles) = cycles(&read(folder, "sma_isobaric_cycles_1_to_4.csv", columns)?)?;
     let set = |(n, pair): (usize, &[Recording])| {
         let name = format!("isobaric cycle {} to {}", n + 1, n + 2);
         Set::one(&name, vec![pair[0].clone()], pair[1].clone())

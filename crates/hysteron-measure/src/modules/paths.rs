@@ -5,17 +5,17 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, Item, UseTree, Visibility};
 
 /// A module's place: its names from the crate's root on. The root has none.
-pub(super) type Place = Vec<String>;
+pub(super) type ModulePath = Vec<String>;
 
 /// What a file imports and re-exports, by paths from the crate's root on.
 #[derive(Default)]
 pub(super) struct Found {
     /// The paths that it names.
-    pub(super) imports: BTreeSet<Place>,
+    pub(super) imports: BTreeSet<ModulePath>,
     /// For each name that it re-exports, the path of it.
-    pub(super) exports: BTreeMap<String, Place>,
+    pub(super) exports: BTreeMap<String, ModulePath>,
     /// The modules of it that only tests have.
-    pub(super) tests: Vec<Place>,
+    pub(super) tests: Vec<ModulePath>,
 }
 
 /// The paths in a file, whose module stands at `place`.
@@ -36,7 +36,7 @@ struct Paths<'a> {
 impl Paths<'_> {
     /// The path from the root on. One that begins with a word of its own may name a module below.
     /// `None` for more `super` than there are folders.
-    fn rooted(&self, names: &[String]) -> Option<Place> {
+    fn rooted(&self, names: &[String]) -> Option<ModulePath> {
         let up = names.iter().take_while(|name| *name == "super").count();
         let (base, rest) = match names.first().map(String::as_str) {
             Some("crate") => (&[][..], &names[1..]),
@@ -121,7 +121,7 @@ impl<'ast> Visit<'ast> for Paths<'_> {
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
-        let names: Place = path
+        let names: ModulePath = path
             .segments
             .iter()
             .map(|part| part.ident.to_string())

@@ -1,6 +1,6 @@
 //! The modules of a crate, what they import and what they re-export.
 
-use super::paths::{Found, Place, gather};
+use super::paths::{Found, ModulePath, gather};
 use crate::result::Result;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub(super) type Graph = BTreeMap<String, BTreeSet<String>>;
 
 /// The modules of a crate.
-pub(super) struct Tree(BTreeMap<Place, Found>);
+pub(super) struct Tree(BTreeMap<ModulePath, Found>);
 
 /// The module of a folder that stands for the folder itself.
 const OWN: &str = "mod.rs";
@@ -19,7 +19,7 @@ impl Tree {
     pub(super) fn read(source: &Path) -> Result<Self> {
         let mut modules = BTreeMap::new();
         read_folder(source, &[], &mut modules)?;
-        let tests: Vec<Place> = modules
+        let tests: Vec<ModulePath> = modules
             .values()
             .flat_map(|found| found.tests.clone())
             .collect();
@@ -28,13 +28,14 @@ impl Tree {
     }
 
     /// For each folder its place and the graph of its modules.
-    pub(super) fn graphs(&self) -> BTreeMap<Place, Graph> {
-        let mut graphs: BTreeMap<Place, Graph> = BTreeMap::new();
+    pub(super) fn graphs(&self) -> BTreeMap<ModulePath, Graph> {
+        let mut graphs: BTreeMap<ModulePath, Graph> = BTreeMap::new();
         for (place, found) in &self.0 {
             for path in &found.imports {
                 let to = self.definer(path, 0);
                 let shared = place.iter().zip(&to).take_while(|(a, b)| a == b).count();
-                let name = |place: &Place| place.get(shared).map_or(OWN, String::as_str).to_owned();
+                let name =
+                    |place: &ModulePath| place.get(shared).map_or(OWN, String::as_str).to_owned();
                 let (from, to) = (name(place), name(&to));
                 if from != to {
                     let graph = graphs.entry(place[..shared].to_vec()).or_default();
@@ -46,7 +47,7 @@ impl Tree {
     }
 
     /// The module that defines what a path names. `depth` counts the re-exports on the way.
-    fn definer(&self, path: &[String], depth: usize) -> Place {
+    fn definer(&self, path: &[String], depth: usize) -> ModulePath {
         let within = (0..=path.len())
             .rev()
             .find(|n| self.0.contains_key(&path[..*n]))
@@ -68,7 +69,7 @@ impl Tree {
 fn read_folder(
     folder: &Path,
     place: &[String],
-    modules: &mut BTreeMap<Place, Found>,
+    modules: &mut BTreeMap<ModulePath, Found>,
 ) -> Result<()> {
     for path in sorted(folder)? {
         let stem = path

@@ -22,7 +22,7 @@ pub(crate) struct Span {
 impl Span {
     /// The range of the finite values; a constant series gets room on both sides, an empty one
     /// `0…1`.
-    pub(crate) fn of<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
+    pub(crate) fn covering<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
         let drawable = values.into_iter().filter(|value| value.abs() <= LARGEST);
         let (low, high) = drawable.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
             (low.min(v), high.max(v))
@@ -287,7 +287,7 @@ mod tests {
             &[f64::MAX, f64::MIN],
             &[1e-310],
         ] {
-            let span = Span::of(values);
+            let span = Span::covering(values);
             assert!(
                 span.low < span.high && (span.high - span.low).is_finite(),
                 "{values:?}: {span:?}"

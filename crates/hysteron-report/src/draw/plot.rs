@@ -105,7 +105,7 @@ impl Plot {
         let mut kept = [of(low), of(high)].concat();
         kept.sort_unstable();
         kept.dedup();
-        let edge = |ys| Line::of(xs, ys, UNSEEN, forward, kept.clone());
+        let edge = |ys| Line::from_kept(xs, ys, UNSEEN, forward, kept.clone());
         let fill = Some(fill);
         self.lines.extend([edge(low), Line { fill, ..edge(high) }]);
     }
@@ -125,11 +125,11 @@ impl Line {
     fn new(xs: &[f64], ys: &[f64], stroke: Stroke, forward: bool) -> Self {
         let samples = xs.len().min(ys.len());
         let kept = kept(&xs[..samples], &ys[..samples], forward);
-        Self::of(xs, ys, stroke, forward, kept)
+        Self::from_kept(xs, ys, stroke, forward, kept)
     }
 
     /// A line of which these samples are kept; all, where there are none.
-    fn of(xs: &[f64], ys: &[f64], stroke: Stroke, forward: bool, kept: Vec<u32>) -> Self {
+    fn from_kept(xs: &[f64], ys: &[f64], stroke: Stroke, forward: bool, kept: Vec<u32>) -> Self {
         let samples = xs.len().min(ys.len());
         let part = |all: &[f64]| match kept.as_slice() {
             [] => all[..samples].to_vec(),
@@ -169,10 +169,10 @@ fn kept(xs: &[f64], ys: &[f64], forward: bool) -> Vec<u32> {
         let stretch = from..(from + length).min(xs.len());
         let mut ends = |values: &[f64]| {
             let order = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-            let told = || stretch.clone().filter(|k| values[*k].is_finite());
+            let finite = || stretch.clone().filter(|k| values[*k].is_finite());
             let gap = stretch.clone().find(|k| !values[*k].is_finite());
             kept.extend(
-                [told().min_by(order), told().max_by(order), gap]
+                [finite().min_by(order), finite().max_by(order), gap]
                     .into_iter()
                     .flatten(),
             );

@@ -90,7 +90,7 @@ impl Sheet {
 
     /// Adds a legend, in as many rows as it takes.
     pub(crate) fn legend(&mut self, keys: &[Key]) {
-        let told = |words: &str| printable(words).into_owned();
+        let label = |words: &str| printable(words).into_owned();
         let (mut x, mut y) = (MARGIN, self.top + 0.5 * ROW);
         for key in keys {
             let (sample, words, subscript) = match key {
@@ -107,8 +107,8 @@ impl Sheet {
             }
             self.sample(key, [x, y]);
             match key {
-                Key::Line(stroke, words) => self.lines.push((*stroke, told(words))),
-                Key::Area(fill, words) => self.areas.push((*fill, told(words))),
+                Key::Line(stroke, words) => self.lines.push((*stroke, label(words))),
+                Key::Area(fill, words) => self.areas.push((*fill, label(words))),
                 Key::Marker(..) | Key::Text(_) => {}
             }
             self.canvas

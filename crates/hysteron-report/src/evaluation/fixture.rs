@@ -53,7 +53,7 @@ impl Fixture {
     pub(crate) fn identify(&mut self) {
         let recordings = std::slice::from_ref(&self.recording);
         let candidates = Candidates::new(Some(8), None);
-        let options = FitOptions::default();
+        let options = FitOptions::plain();
         let (mut options, validation) =
             cross_validate(recordings, &options, &candidates, Progress::NONE).unwrap();
         options.bootstrap = 20;

@@ -54,9 +54,9 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let places: Vec<f64> = (1..=distances.len()).map(|n| n as f64).collect();
     let x = Axis::new(
         &plain("actuators, the strangest first"),
-        Span::of(&places).padded(0.02),
+        Span::covering(&places).padded(0.02),
     );
-    let highest = Span::of(&distances).with(limit).with(0.0);
+    let highest = Span::covering(&distances).with(limit).with(0.0);
     let y = Axis::new(&plain("distance"), highest.padded(0.05).from(0.0));
     let panel = single(sheet, x, y, HEIGHT);
     panel.level(&mut sheet.canvas, limit, &GUIDE);

@@ -69,7 +69,7 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     };
     let all: Vec<Classes> = numbers
         .iter()
-        .map(|(_, number)| Classes::of(view, *number))
+        .map(|(_, number)| Classes::new(view, *number))
         .collect();
     let highest = all.iter().flat_map(|classes| classes.counts);
     let y = Axis::new(&count, Span::from_zero(highest).padded(0.06).from(0.0));
@@ -126,7 +126,7 @@ struct Classes {
 }
 
 impl Classes {
-    fn of(view: &View<'_>, number: fn(&FleetRow) -> Option<f64>) -> Self {
+    fn new(view: &View<'_>, number: fn(&FleetRow) -> Option<f64>) -> Self {
         let of = |row: &FleetRow| number(row).filter(|value| value.is_finite());
         let mut values: Vec<f64> = view.ordered.iter().filter_map(|(row, _)| of(row)).collect();
         let median = median(&mut values);
@@ -137,8 +137,8 @@ impl Classes {
             .filter(|value| (*value - median).abs() <= reach);
         // Where most are equal, all are shown.
         let span = match reach > 0.0 {
-            true => Span::of(within),
-            false => Span::of(&values),
+            true => Span::covering(within),
+            false => Span::covering(&values),
         };
         let mut counts = [0.0; CLASSES];
         for value in &values {

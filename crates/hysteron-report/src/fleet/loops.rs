@@ -60,8 +60,8 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         ),
     ]);
     let both = |n: usize| loops.iter().chain([&usual]).flat_map(move |l| &l[n]);
-    let x = Axis::new(&view.input, Span::of(both(0)).padded(0.03));
-    let y = Axis::new(&view.output, Span::of(both(1)).padded(0.04));
+    let x = Axis::new(&view.input, Span::covering(both(0)).padded(0.03));
+    let y = Axis::new(&view.output, Span::covering(both(1)).padded(0.04));
     let left = left_of(&y, HEIGHT);
     let width = (WIDTH - 2.0 * MARGIN - GAP) / COLUMNS as f64 - left;
     let mut bottom = sheet.top;

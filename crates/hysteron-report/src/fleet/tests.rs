@@ -34,7 +34,7 @@ fn row(n: usize, width: f64) -> FleetRow {
 fn the_strangest_come_first_and_have_their_loops() {
     let mut rows: Vec<FleetRow> = (0..60).map(|n| row(n, 3.0)).collect();
     rows[17] = row(17, 6.0);
-    let norm = Norm::of(&rows).unwrap();
+    let norm = Norm::from_rows(&rows).unwrap();
     let report = Report {
         title: "line",
         shown: Shown::Fleet {

@@ -38,7 +38,7 @@ pub(super) fn find(tracking: &Tracking<'_>) -> Option<Reversal> {
         })
     };
     let spread = |reversal: &Reversal| {
-        let span = Span::of(&reversal.lags);
+        let span = Span::covering(&reversal.lags);
         span.high - span.low
     };
     (0..of_runs.first()?.len())

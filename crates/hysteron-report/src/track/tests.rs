@@ -36,7 +36,7 @@ fn names(fixture: &Fixture) -> Vec<&'static str> {
     drawn.map(|(stem, _)| stem).collect()
 }
 
-fn of(fixture: &Fixture, stem: &str) -> String {
+fn figure(fixture: &Fixture, stem: &str) -> String {
     let svg = |report: &Report<'_>| report.svg(stem).unwrap().unwrap();
     fixture.report(true, svg)
 }
@@ -146,16 +146,16 @@ fn one_controller_and_twelve() {
     let twelve: Vec<Controller> = FOUR.iter().copied().cycle().take(12).collect();
     let fixture = Fixture::new(&twelve, 300);
     assert_eq!(names(&fixture), stems());
-    assert_eq!(pieces(&of(&fixture, "track-output"), "#12385f"), 12);
+    assert_eq!(pieces(&figure(&fixture, "track-output"), "#12385f"), 12);
 }
 
 #[test]
 fn samples_that_are_no_numbers_break_the_curve() {
     let mut fixture = Fixture::new(&FOUR[..1], 400);
-    assert_eq!(pieces(&of(&fixture, "track-error"), "#12385f"), 1);
+    assert_eq!(pieces(&figure(&fixture, "track-error"), "#12385f"), 1);
     fixture.traces[0].output[150..200].fill(f64::NAN);
     fixture.traces[0].reference[300] = f64::INFINITY;
-    assert_eq!(pieces(&of(&fixture, "track-error"), "#12385f"), 3);
+    assert_eq!(pieces(&figure(&fixture, "track-error"), "#12385f"), 3);
     for series in [f64::NAN, f64::INFINITY, 1e308] {
         let mut fixture = Fixture::new(&FOUR, 50);
         for trace in &mut fixture.traces {
@@ -203,7 +203,7 @@ fn a_large_error_that_does_not_last_does_not_set_the_scale() {
     // Marked where it is cut off.
     let mut fixture = Fixture::new(&FOUR, 1000);
     fixture.traces[1].output[500] = 60.0;
-    assert!(of(&fixture, "track-error").contains("beyond the axis"));
+    assert!(figure(&fixture, "track-error").contains("beyond the axis"));
 }
 
 #[test]

@@ -31,7 +31,7 @@ impl<'a> View<'a> {
         let times = tracking.runs.iter().flat_map(|run| &run.trace.time);
         Ok(Self {
             tracking,
-            time_axis: time_axis(&time, Span::of(times)),
+            time_axis: time_axis(&time, Span::covering(times)),
             input: label(&tracking.input, "input"),
             output: label(&tracking.output, "output"),
             drive: label(&tracking.drive, "drive"),

@@ -39,7 +39,7 @@ impl Reproduction {
             levels: LEVELS,
             range: Some(RANGE_DEGC),
             bootstrap: REPLICATES,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let model = Fit::from(&options).run(&prepared[0])?;
         let evaluation = evaluate(&model, &prepared[1])?;

@@ -34,7 +34,7 @@ pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Resul
         levels: options.levels,
         range: Some(options.range),
         smooth: (0.0, options.smooth).into(),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     })
     .run(&recording)?;
     let [_, input, output] = scenario.plant.quantities();
@@ -83,7 +83,7 @@ fn with_body(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
     let mut model = Fit::from(&FitOptions {
         levels: options.levels,
         smooth: options.smooth.into(),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     })
     .thermal(true)
     .run(&recordings)?;

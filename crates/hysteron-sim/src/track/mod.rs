@@ -125,7 +125,7 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
                     &course,
                     Progress::new(&|_, _| tell(0)),
                 )?;
-                let score = |window| Score::of(&trace, window, scheme.drives, &model);
+                let score = |window| Score::new(&trace, window, scheme.drives, &model);
                 let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
                 tell(1)?;
                 Ok(((seed == 1).then_some(trace), scores))

@@ -95,7 +95,7 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
 
 impl Score {
     /// The score of a run, with a model of the same plane, in a window.
-    pub(super) fn of(
+    pub(super) fn new(
         trace: &Trace,
         window: &Window,
         drives: (f64, f64),
@@ -238,7 +238,7 @@ mod tests {
             to_s,
             settled: true,
         };
-        Score::of(trace, &window, (0.0, 2.0), &model).unwrap()
+        Score::new(trace, &window, (0.0, 2.0), &model).unwrap()
     }
 
     fn trace(reference: Vec<f64>, output: Vec<f64>) -> Trace {

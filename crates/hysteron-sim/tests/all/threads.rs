@@ -36,7 +36,7 @@ fn options() -> FitOptions {
         levels: 20,
         range: Some((20.0, 80.0)),
         bootstrap: 4,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     }
 }
 

@@ -1,18 +1,19 @@
 //! The calls of the page.
 
-use super::Shared;
 use super::connections::PART;
 use super::guard::Guard;
+use super::shared::Shared;
 use crate::page;
 use crate::{Fault, Request, Response as Found, Told};
 use axum::Json;
 use axum::body::Body;
-use axum::extract::{Path, State};
+use axum::extract::{Path, Query, State};
 use axum::http::header::{self, CONTENT_TYPE};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, Sse};
-use axum::response::{Html, IntoResponse, Response};
+use axum::response::{Html, IntoResponse, Redirect, Response};
 use hysteron::Growing;
+use std::collections::HashMap;
 use std::convert::Infallible;
 use std::io::Write;
 use std::sync::{Arc, PoisonError};
@@ -22,6 +23,24 @@ use tokio_stream::{Stream, StreamExt};
 
 pub(super) type Parts = (Arc<Guard>, Arc<Shared>);
 
+/// The address that the command printed leads to the page.
+pub(super) async fn enter(
+    State((guard, _)): State<Parts>,
+    Query(query): Query<HashMap<String, String>>,
+) -> Response {
+    match query.get("token") {
+        Some(token) if guard.knows(token) => Redirect::to(&format!("/{token}/")).into_response(),
+        _ => {
+            let why = "the address has no valid token: use the one that the command printed";
+            (StatusCode::FORBIDDEN, why).into_response()
+        }
+    }
+}
+
+pub(super) async fn nothing() -> Response {
+    (StatusCode::NOT_FOUND, "there is nothing here").into_response()
+}
+
 pub(super) async fn index() -> Html<&'static str> {
     Html(page::index())
 }
@@ -30,7 +49,7 @@ pub(super) async fn index() -> Html<&'static str> {
 pub(super) async fn file(Path((_, name)): Path<(String, String)>) -> Response {
     match page::served(&name) {
         Some(file) => ([(CONTENT_TYPE, file.media)], file.text).into_response(),
-        None => super::guard::nothing().await,
+        None => nothing().await,
     }
 }
 
@@ -129,8 +148,8 @@ pub(super) async fn events(
     const EVERY: Duration = Duration::from_millis(150);
     let mut last = String::new();
     let ticks = IntervalStream::new(tokio::time::interval(EVERY));
-    let told = ticks.filter_map(move |_| {
-        let told = Told {
+    let events = ticks.filter_map(move |_| {
+        let state = Told {
             changes: *shared.changes.borrow(),
             // While a call holds the session, there is nothing new.
             jobs: shared.session.try_lock().ok()?.jobs(),
@@ -145,13 +164,13 @@ pub(super) async fn events(
                 .unwrap_or_else(PoisonError::into_inner)
                 .len(),
         };
-        let told = serde_json::to_string(&told).ok()?;
-        (told != last).then(|| {
-            last.clone_from(&told);
-            Ok(Event::default().data(told))
+        let state = serde_json::to_string(&state).ok()?;
+        (state != last).then(|| {
+            last.clone_from(&state);
+            Ok(Event::default().data(state))
         })
     });
-    Sse::new(told).keep_alive(axum::response::sse::KeepAlive::default())
+    Sse::new(events).keep_alive(axum::response::sse::KeepAlive::default())
 }
 
 fn answered(done: Result<Result<Found, Fault>, tokio::task::JoinError>) -> Response {

@@ -7,12 +7,11 @@
 
 use super::connections::Known;
 use crate::page::POLICY;
-use axum::extract::{Query, Request, State};
+use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode};
 use axum::middleware::Next;
-use axum::response::{IntoResponse, Redirect, Response};
-use std::collections::HashMap;
+use axum::response::{IntoResponse, Response};
 use std::sync::Arc;
 
 /// What a call has to bring.
@@ -29,7 +28,7 @@ impl Guard {
     }
 
     /// Compares in a time that does not tell where a guess goes wrong.
-    fn knows(&self, token: &str) -> bool {
+    pub(super) fn knows(&self, token: &str) -> bool {
         let (ours, theirs) = (self.token.as_bytes(), token.as_bytes());
         let pairs = ours.iter().zip(theirs);
         ours.len() == theirs.len() && pairs.fold(0, |all, (a, b)| all | (a ^ b)) == 0
@@ -109,22 +108,4 @@ pub(super) async fn check(
         headers.insert(name, HeaderValue::from_static(value));
     }
     response
-}
-
-/// The address that the command printed leads to the page.
-pub(super) async fn enter(
-    State((guard, _)): State<super::calls::Parts>,
-    Query(query): Query<HashMap<String, String>>,
-) -> Response {
-    match query.get("token") {
-        Some(token) if guard.knows(token) => Redirect::to(&format!("/{token}/")).into_response(),
-        _ => {
-            let why = "the address has no valid token: use the one that the command printed";
-            (StatusCode::FORBIDDEN, why).into_response()
-        }
-    }
-}
-
-pub(super) async fn nothing() -> Response {
-    (StatusCode::NOT_FOUND, "there is nothing here").into_response()
 }

@@ -8,16 +8,17 @@ mod calls;
 mod connections;
 mod guard;
 mod kept;
+mod shared;
 
 use crate::{Fault, Session};
 use axum::Router;
 use axum::routing::{get, post};
 use guard::Guard;
 use kept::Kept;
-use std::io::{Read, Write};
+use shared::Shared;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 
@@ -28,69 +29,6 @@ pub struct Server {
     token: String,
     shared: Arc<Shared>,
     kept: Option<Kept>,
-}
-
-/// What all calls share.
-#[derive(Debug)]
-struct Shared {
-    session: Mutex<Session>,
-    /// The files that were named on the command line. Only these are read from the disk again.
-    named: Mutex<Vec<PathBuf>>,
-    /// What ended without a fit, for the page.
-    failed: Mutex<Option<Fault>>,
-    /// Held by the fit that runs. The others wait: each takes all cores, and memory that grows with
-    /// the fourth power of its levels.
-    turn: Mutex<()>,
-    /// Counts what changed, for the events.
-    changes: watch::Sender<u64>,
-}
-
-impl Shared {
-    fn session(&self) -> MutexGuard<'_, Session> {
-        // A panic inside leaves the session as it was before the request, or closes a job.
-        self.session.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn changed(&self) {
-        self.changes.send_modify(|count| *count += 1);
-    }
-
-    /// Writes the session to its file. What is wrong is told to the page.
-    fn save(&self, kept: &mut Kept) -> Result<(), Fault> {
-        let saved = kept.save(&self.session());
-        if let Err(fault) = &saved {
-            let mut failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner);
-            *failed = Some(fault.clone());
-        }
-        saved
-    }
-
-    fn open_named(&self, path: &Path) -> Result<(), Fault> {
-        let failed = |source| hysteron::Error::File {
-            path: path.to_owned(),
-            source,
-        };
-        let mut session = self.session();
-        let room = session.room();
-        let mut file = std::fs::File::open(path).map_err(failed)?;
-        let length = file.metadata().map_err(failed)?.len();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let lacks = |_| Fault::too_large(&name, room);
-        let mut upload = session.upload();
-        upload
-            .reserve(usize::try_from(length).unwrap_or(usize::MAX))
-            .map_err(lacks)?;
-        let mut part = vec![0; 1 << 16];
-        loop {
-            let count = file.read(&mut part).map_err(failed)?;
-            if count == 0 {
-                break;
-            }
-            upload.write_all(&part[..count]).map_err(lacks)?;
-        }
-        session.open_upload(&name, upload)?;
-        Ok(())
-    }
 }
 
 impl Server {
@@ -216,14 +154,14 @@ async fn keep(shared: Arc<Shared>, kept: Arc<Mutex<Kept>>) {
 fn app(guard: Guard, shared: Arc<Shared>) -> Router {
     let guard = Arc::new(guard);
     Router::new()
-        .route("/", get(guard::enter))
+        .route("/", get(calls::enter))
         .route("/{token}/", get(calls::index))
         .route("/{token}/{file}", get(calls::file))
         .route("/{token}/api/session", post(calls::session))
         .route("/{token}/api/open/{name}", post(calls::open))
         .route("/{token}/api/reload", post(calls::reload))
         .route("/{token}/api/events", get(calls::events))
-        .fallback(guard::nothing)
+        .fallback(calls::nothing)
         .layer(axum::middleware::from_fn_with_state(
             guard.clone(),
             guard::check,

@@ -54,7 +54,7 @@ impl Job {
     /// The job as bytes, for [`Job::from_bytes`] of the same version.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let recordings = |all: &[Recording]| all.iter().map(CarriedRecording::of).collect();
+        let recordings = |all: &[Recording]| all.iter().map(CarriedRecording::new).collect();
         let hold_out = self.hold_out.as_ref().map(|hold_out| match hold_out {
             HoldOut::Branches(share) => CarriedHoldOut::Branches(*share),
             HoldOut::Rows(rows) => CarriedHoldOut::Rows(rows.clone()),
@@ -106,7 +106,7 @@ impl Finished {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let found = match &self.found {
-            Ok(fitted) => SavedFit::of(fitted).ok_or_else(|| Fault::defect("a fit has no model")),
+            Ok(fitted) => SavedFit::new(fitted).ok_or_else(|| Fault::defect("a fit has no model")),
             Err(fault) => Err(fault.clone()),
         };
         let carried = CarriedFinished { id: self.id, found };
@@ -126,7 +126,7 @@ impl Finished {
 }
 
 impl CarriedRecording {
-    fn of(recording: &Recording) -> Self {
+    fn new(recording: &Recording) -> Self {
         let quantity = |of: &Quantity| (of.name.clone(), of.unit.clone());
         let source = recording.source.as_ref();
         Self {

@@ -119,10 +119,10 @@ impl Job {
     /// As [`Job::run`]. `told` gets each stage, and the share of it that is done; not a number where
     /// that is not known.
     #[must_use]
-    pub fn run_telling(self, told: &(dyn Fn(&'static str, f64) + Sync)) -> Finished {
+    pub fn run_telling(self, tell: &(dyn Fn(&'static str, f64) + Sync)) -> Finished {
         let id = self.id;
         let watch = self.watch.clone();
-        let found = catch_unwind(AssertUnwindSafe(|| self.fit(told)));
+        let found = catch_unwind(AssertUnwindSafe(|| self.fit(tell)));
         let found = found.unwrap_or_else(|_| Err(Fault::defect("a fit ended in a panic")));
         let found = match watch.is_cancelled() {
             true => Err(Fault::cancelled()),
@@ -134,11 +134,11 @@ impl Job {
     fn fit(self, tell: &(dyn Fn(&'static str, f64) + Sync)) -> Result<Fitted, Fault> {
         // One that was cancelled while it waited does nothing.
         self.watch.tell("beginning", f64::NAN)?;
-        let told = |stage, share| {
+        let report = |stage, share| {
             tell(stage, share);
             self.watch.tell(stage, share)
         };
-        let fit = build(&self.options)?.progress(Progress::new(&told));
+        let fit = build(&self.options)?.progress(Progress::new(&report));
         let (model, held_out) = match &self.hold_out {
             None => (fit.run(&self.recordings)?, None),
             Some(what) => {
@@ -146,10 +146,11 @@ impl Job {
                 (model, Some(held_out))
             }
         };
-        let mut told: Vec<Advice> = advice(&model, &self.recordings)?;
-        told.extend(held_out.iter().flat_map(HeldOut::advice));
-        let told = told.iter();
-        let advice = told.map(|advice| format!("{advice}: {}", advice.remedy().spelt(spelt)));
+        let mut all: Vec<Advice> = advice(&model, &self.recordings)?;
+        all.extend(held_out.iter().flat_map(HeldOut::advice));
+        let advice = all
+            .iter()
+            .map(|advice| format!("{advice}: {}", advice.remedy().spelt(spelt)));
         let advice = advice.collect();
         let ends = |of: fn(&Recording) -> &[f64]| {
             let ranges = self.recordings.iter().map(|r| hysteron::range(of(r)));

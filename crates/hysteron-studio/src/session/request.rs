@@ -3,12 +3,13 @@
 use super::design::DesignView;
 use super::drive::{DriveView, Pull};
 use super::fault::Fault;
+use super::file_view::FileView;
 use super::fitted::FitView;
 use super::fitting::Held;
 use super::id::Id;
 use super::job::JobView;
 use super::look::{Curves, View};
-use super::opened::{FileView, Part, Purpose};
+use super::opened::{Part, Purpose};
 use super::plane::{PlaneKind, PlaneView, SampleView};
 use super::prepare::Steps;
 use super::take_home::{Download, Take};

@@ -115,7 +115,7 @@ pub(super) struct SavedFit {
 }
 
 impl SavedFit {
-    pub(super) fn of(fit: &Fitted) -> Option<Self> {
+    pub(super) fn new(fit: &Fitted) -> Option<Self> {
         Some(Self {
             id: fit.id,
             files: fit.files.clone(),
@@ -170,7 +170,7 @@ pub(super) fn is_session(bytes: &[u8]) -> bool {
 impl Session {
     /// Writes the session, with little memory of its own.
     pub(crate) fn write_to(&self, out: impl Write) -> std::io::Result<()> {
-        fn of(file: &Opened) -> SavedFile<'_> {
+        fn saved(file: &Opened) -> SavedFile<'_> {
             SavedFile {
                 id: file.id,
                 name: file.name.clone(),
@@ -185,8 +185,8 @@ impl Session {
         let saved = File {
             format: FORMAT.into(),
             version: VERSION,
-            files: self.files.iter().map(of).collect(),
-            fits: self.fits.iter().filter_map(SavedFit::of).collect(),
+            files: self.files.iter().map(saved).collect(),
+            fits: self.fits.iter().filter_map(SavedFit::new).collect(),
         };
         Ok(serde_json::to_writer(out, &saved)?)
     }

@@ -360,7 +360,7 @@ fn run_from(model: &Model, on: bool, recordings: &[Recording]) -> Result<Vec<f64
             true => model.saturated(),
             false => model.off(),
         };
-        let (begin, around) = (all.len(), Surroundings::of(model, recording));
+        let (begin, around) = (all.len(), Surroundings::from_recording(model, recording));
         all.resize(begin + recording.len(), 0.0);
         model.run_in(&mut state, &recording.input, around, &mut all[begin..])?;
     }

@@ -50,7 +50,7 @@ pub(super) fn adapt(
         }
         let around = Surroundings {
             load: None,
-            ..Surroundings::of(model, recording)
+            ..Surroundings::from_recording(model, recording)
         };
         for (n, sample) in around.samples(model, &recording.input)? {
             let done = learned.len();

@@ -161,7 +161,7 @@ impl Compensator {
             Some((branch, _)) => rises != (branch == Direction::Rising),
             None => false,
         };
-        let told = tolerance;
+        let asked = tolerance;
         let tolerance = match heading {
             None if !turned => NOT_TURNED * tolerance,
             _ => tolerance,
@@ -174,11 +174,11 @@ impl Compensator {
                         None => Policy::Hold,
                     };
                     // *Hold* has no headings.
-                    let headings = policy.headings(next, told).into_iter();
+                    let headings = policy.headings(next, asked).into_iter();
                     let ahead = headings.chain(std::iter::repeat(None)).zip(next).map(
                         |(heading, &target)| Wanted {
                             dt,
-                            ..Target::new(target).heading(heading).tolerance(told).into()
+                            ..Target::new(target).heading(heading).tolerance(asked).into()
                         },
                     );
                     ahead.collect()

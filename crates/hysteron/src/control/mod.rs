@@ -5,8 +5,8 @@
 //! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
 //! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
-//! feedback and `tuning` its gains; `sensor` checks each sensor; `device`, `run` and `trace`
-//! connect the loop to a device and record it.
+//! feedback and `tuning` its gains; `sensor` checks each sensor; `status` has the flags; `device`,
+//! `run` and `trace` connect the loop to a device and record it.
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
@@ -54,6 +54,7 @@ mod pid;
 mod run;
 mod scheme;
 mod sensor;
+mod status;
 mod trace;
 mod tuning;
 
@@ -63,5 +64,6 @@ pub use device::{Device, Disturbance, Reading, SimulatedPlant};
 pub use pid::{Gains, Pid};
 pub use run::{Course, run};
 pub use scheme::{InnerLoop, Scheme};
-pub use trace::{LoopStatus, Snapshot, Trace};
+pub use status::LoopStatus;
+pub use trace::{Snapshot, Trace};
 pub use tuning::RelayTest;

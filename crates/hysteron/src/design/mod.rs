@@ -140,7 +140,7 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     let levels = options.plane.levels();
     let mut known = Corners::none(levels);
     if !recorded.is_empty() {
-        known.0 = Unresolved::of(recorded, options.plane, options.operator, Initial::Off)?
+        known.0 = Unresolved::new(recorded, options.plane, options.operator, Initial::Off)?
             .corners_known();
     }
     let wanted = spiral::completing(levels, &known);

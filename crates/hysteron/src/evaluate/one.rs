@@ -80,7 +80,7 @@ pub(super) fn keeping(
     let (begin, estimated_from) = begin(model, recording, start)?;
     let (output_model, clipped) = model.run_over(&mut begin.clone(), recording)?;
     let forward = compare(&recording.output, &output_model);
-    let mut band = BandEvaluation::of(model, &begin, recording, &output_model)?;
+    let mut band = BandEvaluation::new(model, &begin, recording, &output_model)?;
     if let Some(band) = &mut band {
         band.half_width = keep(std::mem::take(&mut band.half_width));
     }
@@ -166,7 +166,7 @@ fn evaluate_inverse(
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
-    let around = Surroundings::of(model, recording);
+    let around = Surroundings::from_recording(model, recording);
     let run = |policy: Policy| -> Result<InverseRun> {
         let mut state = begin.clone();
         let targets = &recording.output;

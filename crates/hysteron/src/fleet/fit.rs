@@ -257,7 +257,7 @@ impl<'a> Reading<'a> {
         self.before += source.bytes;
         let id = source.name.clone();
         self.place += 1;
-        self.of(id, source, Err(error), 0)
+        self.numbered(id, source, Err(error), 0)
     }
 
     fn job(
@@ -284,10 +284,11 @@ impl<'a> Reading<'a> {
                 })
             }
         };
-        self.of(id, source, recording, bytes)
+        self.numbered(id, source, recording, bytes)
     }
 
-    fn of(
+    /// The job of the present number.
+    fn numbered(
         &self,
         id: String,
         source: &Source,
@@ -373,11 +374,11 @@ impl Work<'_> {
             done.resumed.insert(place);
             return Ok(());
         }
-        let told = |_: &'static str, _: f64| match self.ended.load(Ordering::Relaxed) {
+        let report = |_: &'static str, _: f64| match self.ended.load(Ordering::Relaxed) {
             false => Ok(()),
             true => Err(Error::Fit("ended".into())),
         };
-        let progress = Progress::new(&told);
+        let progress = Progress::new(&report);
         let row = one::fit(id, file, digest, recording, notes, self.options, progress)?;
         let values = row.values();
         let mut done = self.done();

@@ -50,7 +50,7 @@ pub(super) fn fit(
     let failed = |_| Err(Error::Fit("a defect of hysteron ended this fit".into()));
     let (model, warnings) = fitted.unwrap_or_else(failed)?;
     let digest = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(FleetRow::of(id, file, digest, model, warnings))
+    Ok(FleetRow::new(id, file, digest, model, warnings))
 }
 
 fn fit_one(

@@ -76,7 +76,7 @@ impl Norm {
     ///
     /// # Errors
     /// [`Error::Fit`] for fewer than [`Norm::FEWEST`] whose loops can be described.
-    pub fn of<'a>(rows: impl IntoIterator<Item = &'a FleetRow>) -> Result<Self> {
+    pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a FleetRow>) -> Result<Self> {
         let rows = rows.into_iter().map(numbers);
         Self::of_numbers(
             rows.filter(|row| row.iter().all(|n| n.is_finite()))

@@ -72,10 +72,10 @@ impl FleetRow {
         let known = |text: Option<&String>| text.cloned().unwrap_or_default();
         let file = known(fit.and_then(|fit| fit.file.as_ref()));
         let digest = known(fit.and_then(|fit| fit.sha256.as_ref()));
-        Self::of(id, file, digest, model, Vec::new())
+        Self::new(id, file, digest, model, Vec::new())
     }
 
-    pub(super) fn of(
+    pub(super) fn new(
         id: &str,
         file: String,
         digest: String,
@@ -86,7 +86,7 @@ impl FleetRow {
             id: id.to_owned(),
             file,
             digest,
-            shape: Shape::of(&model),
+            shape: Shape::new(&model),
             model,
             warnings,
         }
@@ -193,7 +193,7 @@ impl FleetRow {
             id: id?,
             file: file?,
             digest: digest?,
-            shape: Shape::of(&model),
+            shape: Shape::new(&model),
             model,
             warnings,
         })

@@ -32,13 +32,13 @@ impl Shape {
     /// let mut weights = vec![0.0; 15];
     /// weights[hysteron::operator_index(2, 5)] = 8.0;
     /// let model = Model::new(Operator::Mkp, plane, weights, 1.0, Sign::Negative)?;
-    /// let shape = Shape::of(&model);
+    /// let shape = Shape::new(&model);
     /// assert_eq!((shape.stroke, shape.width, shape.position), (-8.0, Some(30.0), Some(30.0)));
     /// assert!((shape.slope.unwrap() + 0.8).abs() < 1e-12);
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     #[must_use]
-    pub fn of(model: &Model) -> Self {
+    pub fn new(model: &Model) -> Self {
         let plane = model.plane();
         let levels = plane.levels();
         let inputs = corners(model);

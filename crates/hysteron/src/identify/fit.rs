@@ -22,7 +22,7 @@ use std::sync::Arc;
 ///
 /// [`Fit::new`] leaves everything to the data: levels, smoothness, spacing, start, outliers. It
 /// runs a bootstrap with [`FitOptions::usual_bootstrap`] replicates, so the model has standard
-/// errors and a band. A fit made from [`FitOptions`] leaves nothing to the data.
+/// errors and a band. A fit made from [`FitOptions::plain`] leaves nothing to the data.
 ///
 /// The `n × N` matrix of operator states is never formed. For inputs with few turning points at
 /// once the Gram matrix takes `O(n + N²)` time, and from 300 unknowns on it is kept sparse. The
@@ -58,7 +58,7 @@ impl Default for Fit<'_> {
         let options = FitOptions {
             robust: true,
             spacing: Spacing::Auto,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         Self {
             open: Open {

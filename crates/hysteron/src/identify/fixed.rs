@@ -41,7 +41,7 @@ pub(crate) fn fit_weights_without(
         fitted = problem.solve(None, progress)?;
     }
     let mut model = described(&problem, &fitted, recordings)?;
-    let confidence = confidence::of(&problem, &fitted, progress)?;
+    let confidence = confidence::estimate(&problem, &fitted, progress)?;
     if let Some(fit) = &mut model.fit {
         fit.confidence = confidence;
     }
@@ -75,8 +75,11 @@ pub(crate) fn described(
     let modelled = modelled.map(|(y, r)| y - sign.factor() * r);
     let errors = Errors::of_each(measured, modelled, |_| true)
         .ok_or_else(|| Error::Fit("no samples".into()))?;
-    let file = SeenFile::of(first);
-    let others: Vec<SeenFile> = recordings[1..].iter().filter_map(SeenFile::of).collect();
+    let file = SeenFile::from_recording(first);
+    let others: Vec<SeenFile> = recordings[1..]
+        .iter()
+        .filter_map(SeenFile::from_recording)
+        .collect();
     model.fit = Some(FitSummary {
         solver: options.solver,
         smooth: options.smooth,

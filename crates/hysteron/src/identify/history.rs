@@ -28,7 +28,7 @@ const REFINED: usize = 6;
 /// # Errors
 /// As [`Model::run_in`].
 pub(crate) fn find_start(model: &Model, recording: &Recording) -> Result<(FittedStart, usize)> {
-    let around = Surroundings::of(model, recording);
+    let around = Surroundings::from_recording(model, recording);
     let seen = model.seen(&recording.input, around)?;
     let beginning = beginning(&seen);
     let search = Search {

@@ -27,7 +27,7 @@ pub(super) struct Neighbours<'a> {
 
 impl<'a> Neighbours<'a> {
     /// `same` is the largest distance between outputs that agree.
-    pub(super) fn of(recording: &'a Recording, suspect: &[(usize, f64)], same: f64) -> Self {
+    pub(super) fn new(recording: &'a Recording, suspect: &[(usize, f64)], same: f64) -> Self {
         let branches = match suspect.is_empty() {
             true => Vec::new(),
             false => branch_spans(&recording.input, usual_tolerance(&recording.input)).collect(),

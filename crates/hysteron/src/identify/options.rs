@@ -78,10 +78,10 @@ pub enum Spacing {
     Auto,
 }
 
-/// The options of a fit. Their defaults leave nothing to the data. Those of
-/// [`Fit::new`](crate::Fit::new) leave everything to it, where the table says so.
+/// The options of a fit. [`FitOptions::plain`] leaves nothing to the data; the defaults, which are
+/// those of [`Fit::new`](crate::Fit::new), leave to it what the table calls auto.
 ///
-/// | field | default; of `Fit::new` | range | purpose |
+/// | field | plain; default | range | purpose |
 /// | --- | --- | --- | --- |
 /// | `operator` | MKP | MKP, KP, relay | the elementary operator |
 /// | `levels` | 20; auto | 2 or more | number of levels `K` |
@@ -169,6 +169,41 @@ impl Prior {
 }
 
 impl FitOptions {
+    /// Nothing is left to the data: 20 levels at equal distances, no smoothness, every operator off
+    /// before the first sample, no search for outliers, no stages, no bootstrap.
+    ///
+    /// ```
+    /// use hysteron::{Fit, FitOptions, Recording};
+    /// let input: Vec<f64> = (0..200).map(|n| 30.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
+    /// let recording = Recording::new(input.clone(), input)?;
+    /// let model = Fit::from(FitOptions { levels: 5, ..FitOptions::plain() }).run(&recording)?;
+    /// assert_eq!(model.plane().levels(), 5);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn plain() -> Self {
+        Self {
+            operator: Operator::Mkp,
+            levels: 20,
+            range: None,
+            solver: Solver::Nnls,
+            sign: None,
+            offset: None,
+            smooth: Smooth::NONE,
+            ridge: RIDGE,
+            robust: false,
+            start: Start::Off,
+            load_law: LoadLaw::Shift,
+            load_curves: None,
+            load_degree: None,
+            spacing: Spacing::Uniform,
+            creep: Choice::Fixed(0),
+            lag: Choice::Fixed(0.0),
+            curve: Choice::Fixed(0),
+            bootstrap: 0,
+        }
+    }
+
     pub(crate) fn prior(&self) -> Prior {
         Prior {
             smooth: self.smooth,
@@ -189,31 +224,6 @@ impl FitOptions {
             0..=24 => 200,
             25..=44 => 60,
             _ => 0,
-        }
-    }
-}
-
-impl Default for FitOptions {
-    fn default() -> Self {
-        Self {
-            operator: Operator::Mkp,
-            levels: 20,
-            range: None,
-            solver: Solver::Nnls,
-            sign: None,
-            offset: None,
-            smooth: Smooth::NONE,
-            ridge: RIDGE,
-            robust: false,
-            start: Start::Off,
-            load_law: LoadLaw::Shift,
-            load_curves: None,
-            load_degree: None,
-            spacing: Spacing::Uniform,
-            creep: Choice::Fixed(0),
-            lag: Choice::Fixed(0.0),
-            curve: Choice::Fixed(0),
-            bootstrap: 0,
         }
     }
 }

@@ -111,7 +111,7 @@ fn judged(
             .zip(moved)
             .for_each(|(r, moved)| *r += moved);
         let (far, residual) = isolated(residual, DEVIATIONS, smallest[recording]);
-        let with = Neighbours::of(own, &far, smallest[recording]);
+        let with = Neighbours::new(own, &far, smallest[recording]);
         let (agree, alone): (_, Vec<Far>) = far.into_iter().partition(|far| with.agree(far.0));
         let heights = heights(residual, agree, &alone);
         found.extend(alone.iter().zip(heights).map(|((sample, _), by)| Outlier {

@@ -62,7 +62,7 @@ const TINY: f64 = 1e-11;
 /// let models = models.collect::<hysteron::Result<Vec<_>>>()?;
 ///
 /// // Two thirds of a rise are enough for the next one.
-/// let prior = WeightPrior::of(&models)?;
+/// let prior = WeightPrior::from_models(&models)?;
 /// let (part, whole) = (record(1.55, 40)?, record(1.55, 300)?);
 /// let error = |model: &_| Ok::<_, hysteron::Error>(hysteron::evaluate(model, &whole)?.forward.rmse);
 /// let known = error(&fit.run(&whole)?)?;
@@ -92,7 +92,7 @@ impl WeightPrior {
     /// # Errors
     /// [`Error::Fit`] for fewer than 10 models, for models that differ in more than weights and
     /// offset, and for models that were not fitted.
-    pub fn of(models: &[Model]) -> Result<Self> {
+    pub fn from_models(models: &[Model]) -> Result<Self> {
         let Some(first) = models.first().filter(|_| models.len() >= ENOUGH) else {
             let count = models.len();
             let problem = format!("{count} models make no prior: {ENOUGH} or more are needed");

@@ -3,8 +3,10 @@
 
 use crate::error::{Error, Result};
 use crate::model::confidence::{Confidence, INTERVAL};
-use crate::model::{Model, OperatorState, Operators, State};
+use crate::model::load::LoadPart;
+use crate::model::{Model, OperatorState, Operators, State, Surroundings};
 use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
 use serde::Serialize;
 
 /// The 95 % prediction band of a model with confidence.
@@ -19,7 +21,7 @@ use serde::Serialize;
 /// let input: Vec<f64> = (0..300).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
 /// let noisy = |(n, t): (usize, &f64)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin();
 /// let output = input.iter().enumerate().map(noisy).collect();
-/// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
+/// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::plain() };
 /// let model = Fit::from(&options).run(&Recording::new(input, output)?)?;
 /// let band = model.band()?.ok_or("a bootstrap was asked for")?;
 /// let half_width = band.run(&model.off(), &[20.0, 60.0, 40.0])?;
@@ -46,11 +48,31 @@ impl Model {
             _ => Ok(None),
         }
     }
+
+    /// The lower and the upper end of the 95 % band around [`Model::simulate_in`].
+    ///
+    /// # Errors
+    /// As [`Model::simulate_in`]; [`Error::Fit`] for a model without a band.
+    pub fn band_in(
+        &self,
+        input: &[f64],
+        surroundings: Surroundings<'_>,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
+        let Some(band) = self.band()? else {
+            let what = "the model does not say how certain it is";
+            let bootstrap = Setting::number("bootstrap", 200);
+            let remedy = Remedy::new("fit it again with {}", [bootstrap]);
+            return Err(Error::Fit(what.into()).remedied(remedy));
+        };
+        let output = self.simulate_in(input, surroundings)?;
+        let half = band.run(&self.start(), &self.seen(input, surroundings)?)?;
+        Ok(ends(&output, &half))
+    }
 }
 
 impl Band {
     fn new(model: &Model, confidence: &Confidence) -> Result<Self> {
-        let factor = |(n, part): (usize, &crate::model::load::LoadPart)| {
+        let factor = |(n, part): (usize, &LoadPart)| {
             let weights = part.weights.clone();
             Operators::new(
                 model.operator(),
@@ -163,7 +185,7 @@ impl BandEvaluation {
 
     /// The band of `model` on `recording` from the state `begin` on. `output_model` is the modelled
     /// output.
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: &Model,
         begin: &State,
         recording: &Recording,
@@ -172,7 +194,7 @@ impl BandEvaluation {
         let Some(band) = model.band()? else {
             return Ok(None);
         };
-        let around = crate::model::Surroundings::of(model, recording);
+        let around = Surroundings::from_recording(model, recording);
         let half_width = band.run(begin, &model.seen(&recording.input, around)?)?;
         let modelled = output_model.iter().zip(&half_width);
         let inside = recording
@@ -195,7 +217,6 @@ mod tests {
     use super::*;
     use crate::model::Plane;
     use crate::model::Sign;
-    use crate::model::load::LoadPart;
     use crate::model::summary::FitSummary;
     use hysteron_core::Definition;
     use hysteron_core::Operator;

@@ -2,11 +2,9 @@
 //! operators.
 
 use crate::error::{Error, Result};
-use crate::model::Model;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// A lumped thermal body: `T' = (T∞ − T)/τ` with `T∞ = ambient + gain · drive`. It has one time
 /// constant for heating (`T∞ > T`) and one for cooling.
@@ -153,28 +151,6 @@ pub(crate) fn range_of(parameter: &str) -> &'static str {
     match parameter {
         "ambient" => "a finite number",
         _ => "a finite number above zero",
-    }
-}
-
-impl Model {
-    /// The model behind its thermal body: its input is the temperature.
-    #[must_use]
-    pub fn without_body(&self) -> Self {
-        let mut model = self.clone();
-        (model.thermal, model.drive) = (None, None);
-        model
-    }
-
-    /// The recording with the temperature as its input: behind the thermal body, if the model has
-    /// one.
-    ///
-    /// # Errors
-    /// [`Error::Thermal`] for a recording without time if there is a body.
-    pub fn behind_body<'r>(&self, recording: &'r Recording) -> Result<Cow<'r, Recording>> {
-        match &self.thermal {
-            None => Ok(Cow::Borrowed(recording)),
-            Some(body) => Ok(Cow::Owned(body.behind(recording)?)),
-        }
     }
 }
 

@@ -51,12 +51,12 @@ impl<T: Real> StageConstants<T> {
             lists[place.ok_or(Error::Stage { stage: "stages" })?] = numbers;
         }
         let constants = Self { lists };
-        Ok(Self::of(&constants.built()?))
+        Ok(Self::from_stages(&constants.built()?))
     }
 
     /// The constants of these stages.
     #[must_use]
-    pub fn of(stages: &Stages<'_, T>) -> Self {
+    pub fn from_stages(stages: &Stages<'_, T>) -> Self {
         let lists = stages.constants().map(|(_, numbers)| numbers.to_vec());
         Self {
             lists: lists.collect(),

@@ -5,88 +5,26 @@
 //! by the names that the stages declare. A model is written in the lowest version that has what it
 //! needs.
 
+mod entries;
+
+use self::entries::{
+    DriveEntry, File, InputEntry, LoadEntry, OperatorName, OutputEntry, PlaneEntry, ThermalEntry,
+    fault,
+};
 use crate::error::{Error, Result};
 use crate::model::Plane;
-use crate::model::body::{FirstOrder, range_of};
 use crate::model::constants::{CreepTerm, StageConstants};
-use crate::model::load::{LoadCurves, LoadDependence, LoadPart};
-use crate::model::start::FittedStart;
+use crate::model::load::{LoadDependence, LoadPart};
 use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
 use crate::recording::{LARGEST, Quantity};
 use hysteron_core::{Constant, Operator, Stages};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::collections::BTreeMap;
 
 pub(crate) const FORMAT: &str = "hysteron-model";
 /// The versions that can be read.
 const VERSIONS: std::ops::RangeInclusive<u64> = 1..=3;
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object in braces")]
-struct File {
-    format: String,
-    version: u64,
-    operator: OperatorName,
-    plane: PlaneEntry,
-    #[serde(default)]
-    input: InputEntry,
-    #[serde(default)]
-    output: OutputEntry,
-    weights: Vec<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    load: Option<LoadEntry>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    thermal: Option<ThermalEntry>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    drive: Option<DriveEntry>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    spacing: Vec<f64>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    creep: Vec<CreepTerm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    lag: Option<f64>,
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    stages: BTreeMap<String, Vec<f64>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    start: Option<FittedStart>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    fit: Option<FitSummary>,
-}
-
-impl File {
-    /// The version that is needed, and an entry that needs it.
-    fn needed(&self) -> (u64, &'static str) {
-        if !self.stages.is_empty() {
-            return (3, "stages");
-        }
-        let curves = self.load.as_ref().is_some_and(|load| load.curves.is_some());
-        let ambient = |ThermalEntry::FirstOrder(body): &ThermalEntry| body.ambient != 0.0;
-        [
-            ("load.curves", curves),
-            (
-                "thermal.ambient",
-                self.thermal.as_ref().is_some_and(ambient),
-            ),
-            ("drive", self.drive.is_some()),
-            ("spacing", !self.spacing.is_empty()),
-            ("creep", !self.creep.is_empty()),
-            ("lag", self.lag.is_some()),
-            ("start", self.start.is_some()),
-        ]
-        .into_iter()
-        .find_map(|(name, present)| present.then_some((2, name)))
-        .unwrap_or((1, "format"))
-    }
-}
-
-/// The drives that the actuator was recorded with.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object in braces")]
-struct DriveEntry {
-    min: f64,
-    max: f64,
-}
 
 /// The fields that show whether the rest of the file can be read.
 #[derive(Deserialize)]
@@ -94,93 +32,6 @@ struct DriveEntry {
 struct Head {
     format: Option<String>,
     version: Option<serde_json::Value>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum OperatorName {
-    Mkp,
-    Kp,
-    Relay,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object in braces")]
-struct PlaneEntry {
-    min: f64,
-    max: f64,
-    levels: usize,
-}
-
-#[derive(Serialize, Deserialize, Default)]
-#[serde(default, deny_unknown_fields, expecting = "an object in braces")]
-struct InputEntry {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, expecting = "an object in braces")]
-struct OutputEntry {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-    offset: f64,
-    sign: i64,
-}
-
-/// Weights that depend on a load. `weights` and `offset` of the file are then those at the middle
-/// of its range.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object in braces")]
-struct LoadEntry {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-    min: f64,
-    max: f64,
-    /// One entry for each Bernstein polynomial, from the smallest load on.
-    parts: Vec<LoadPart>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    curves: Option<LoadCurves>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(
-    tag = "kind",
-    rename_all = "kebab-case",
-    expecting = "an object in braces"
-)]
-enum ThermalEntry {
-    FirstOrder(FirstOrder),
-}
-
-impl ThermalEntry {
-    fn check(self) -> Result<FirstOrder> {
-        let Self::FirstOrder(body) = self;
-        match body.fault() {
-            None => Ok(body),
-            Some((field, value)) => Err(fault(
-                &format!("thermal.{field}"),
-                format!("{value} is not {}", range_of(field)),
-            )),
-        }
-    }
-}
-
-impl Default for OutputEntry {
-    fn default() -> Self {
-        Self {
-            name: None,
-            unit: None,
-            offset: 0.0,
-            sign: 1,
-        }
-    }
 }
 
 /// The error for a file that holds something else.
@@ -355,7 +206,7 @@ impl Model {
                 sign: self.sign().factor() as i64,
             },
             weights,
-            load: self.load.as_ref().map(LoadEntry::of),
+            load: self.load.as_ref().map(LoadEntry::new),
             thermal: self.thermal.map(ThermalEntry::FirstOrder),
             drive: self.drive.map(|(min, max)| DriveEntry { min, max }),
             spacing: self.spacing.clone(),
@@ -378,61 +229,6 @@ impl Model {
         others
             .map(|(constant, numbers)| (constant.name.to_owned(), numbers.to_vec()))
             .collect()
-    }
-}
-
-impl LoadEntry {
-    fn of(load: &LoadDependence) -> Self {
-        let (min, max) = load.range();
-        Self {
-            name: Some(load.quantity.name.clone()),
-            unit: load.quantity.unit.clone(),
-            min,
-            max,
-            parts: load.parts().to_vec(),
-            curves: load.curves.clone(),
-        }
-    }
-
-    fn into_load(self, model: &Model) -> Result<LoadDependence> {
-        let (min, max) = (self.min, self.max);
-        if !(min.is_finite() && max.is_finite() && min < max) {
-            let problem = format!("the range {min} to {max} must be finite, the smaller end first");
-            return Err(fault("load", problem));
-        }
-        if self.parts.is_empty() {
-            return Err(fault("load.parts", "there are none".into()));
-        }
-        let name = self.name.unwrap_or_else(|| "load".into());
-        let quantity = Quantity {
-            name,
-            unit: self.unit,
-        };
-        let load = LoadDependence::new(quantity, (min, max), self.parts, model.operators());
-        let mut load =
-            load.map_err(|(n, error)| fault(&format!("load.parts[{n}]"), error.to_string()))?;
-        if self
-            .curves
-            .as_ref()
-            .is_some_and(|curves| curves.loads.is_empty())
-        {
-            return Err(fault("load.curves.loads", "there are none".into()));
-        }
-        load.curves = self.curves;
-        Ok(load)
-    }
-}
-
-impl DriveEntry {
-    fn check(self) -> Result<(f64, f64)> {
-        let Self { min, max } = self;
-        match min.is_finite() && max.is_finite() && min <= max {
-            true => Ok((min, max)),
-            false => {
-                let what = format!("the range {min} to {max} must be finite and in order");
-                Err(fault("drive", what))
-            }
-        }
     }
 }
 
@@ -522,12 +318,4 @@ fn parse<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T> {
         .map_err(|error| fault(&error.path().to_string(), error.inner().to_string()))?;
     json.end().map_err(|error| fault(".", error.to_string()))?;
     Ok(value)
-}
-
-fn fault(field: &str, problem: String) -> Error {
-    Error::ModelFile {
-        path: None,
-        field: field.into(),
-        problem,
-    }
 }

@@ -1,7 +1,6 @@
 //! The inverse of a model: the input for a wanted output, for one target or a series of them.
 
 use crate::error::{Error, Result};
-use crate::model::Preview;
 use crate::model::policy::Policy;
 use crate::model::{Model, Operators, Sample, Sign, State, Surroundings};
 use hysteron_core::{Direction, Solution, Target};
@@ -62,7 +61,7 @@ impl From<Target<f64>> for Wanted {
 
 impl Wanted {
     /// What a sample wants whose input is the target.
-    pub(crate) fn of(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Self {
+    pub(crate) fn new(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Self {
         let Sample {
             input: output,
             dt,
@@ -85,9 +84,9 @@ impl Wanted {
 /// a model with a thermal body it is the drive.
 #[derive(Debug, Clone)]
 pub struct Inverse<'m> {
-    model: &'m Model,
+    pub(super) model: &'m Model,
     core: hysteron_core::Inverse<'m, f64, Vec<f64>>,
-    drive: (f64, f64),
+    pub(super) drive: (f64, f64),
     horizon: f64,
 }
 
@@ -293,85 +292,6 @@ impl Inverse<'_> {
         self.headed_in(state, targets, &headings, tolerance, surroundings)
     }
 
-    /// As [`Inverse::series_in`], for a reference that is known ahead: the drive of a model with a
-    /// thermal body may start up to `seconds` before a target. Earlier targets are missed by up to a
-    /// tenth of the range for that, and targets at the very ends of the range by 1 %.
-    ///
-    /// # Errors
-    /// As [`Inverse::series_in`].
-    pub fn previewed(
-        &self,
-        state: &mut State,
-        targets: &[f64],
-        policy: Policy,
-        tolerance: f64,
-        surroundings: Surroundings<'_>,
-        seconds: f64,
-    ) -> Result<Vec<Solution<f64>>> {
-        if self.model.thermal.is_none() || seconds <= 0.0 {
-            return self.series_in(state, targets, policy, tolerance, surroundings);
-        }
-        let inner = self.model.without_body();
-        let ahead = state.clone();
-        let mut preview = Preview::new(self.model, &inner, self.drive, seconds, ahead)?;
-        let mut headings = policy.headings(targets, tolerance).into_iter();
-        let mut found = Vec::with_capacity(targets.len());
-        for (_, sample) in surroundings.samples(self.model, targets)? {
-            let heading = headings.next().flatten();
-            for (wanted, asked) in preview.push(Wanted::of(sample, heading, tolerance))? {
-                found.push(preview.step(self, state, wanted, asked)?);
-            }
-        }
-        while let Some((wanted, asked)) = preview.next() {
-            found.push(preview.step(self, state, wanted, asked)?);
-        }
-        Ok(found)
-    }
-
-    /// As [`Inverse::step`], for a reference that is known ahead: `next` has the targets after this
-    /// one, each with its time step. The drive of a model with a thermal body may start before they
-    /// are due, as with [`Inverse::previewed`]. A model without a body takes no notice of them.
-    ///
-    /// A step costs as many steps as there are targets ahead, and memory for them.
-    ///
-    /// ```
-    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Status, Target, Wanted};
-    /// let plane = Plane::new(40.0, 60.0, 2)?;
-    /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
-    /// model.thermal = Some(FirstOrder { gain: 100.0, ..FirstOrder::default() });
-    /// let inverse = model.inverse()?.drive_range(0.0, 1.0)?;
-    /// let wanted = |output| Wanted { dt: Some(0.2), ..Target::new(output).into() };
-    /// let (mut blind, mut sees) = (model.start(), model.start());
-    /// let held = inverse.step(&mut blind, wanted(0.0))?;
-    /// let early = inverse.step_ahead(&mut sees, wanted(0.0), &[wanted(0.0), wanted(2.9)])?;
-    /// assert!(early.input > held.input);
-    /// # Ok::<(), hysteron::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`Inverse::step`], also for a target ahead. The state then stays as it is.
-    pub fn step_ahead(
-        &self,
-        state: &mut State,
-        wanted: impl Into<Wanted>,
-        next: &[Wanted],
-    ) -> Result<Solution<f64>> {
-        let wanted = wanted.into();
-        if self.model.thermal.is_none() || next.is_empty() {
-            return self.step(state, wanted);
-        }
-        let inner = self.model.without_body();
-        let ahead = state.clone();
-        let mut preview = Preview::new(self.model, &inner, self.drive, f64::INFINITY, ahead)?;
-        for wanted in std::iter::once(&wanted).chain(next) {
-            preview.push(*wanted)?;
-        }
-        match preview.next() {
-            Some((wanted, asked)) => preview.step(self, state, wanted, asked),
-            None => self.step(state, wanted),
-        }
-    }
-
     /// As [`Inverse::series`], with the direction that each target takes next. A target without one
     /// (`None`, or beyond the end of `headings`) is held.
     ///
@@ -445,7 +365,7 @@ impl Inverse<'_> {
             return Ok(());
         }
         for ((_, sample), heading) in samples {
-            take(self.step(state, Wanted::of(sample, heading, tolerance))?);
+            take(self.step(state, Wanted::new(sample, heading, tolerance))?);
         }
         Ok(())
     }

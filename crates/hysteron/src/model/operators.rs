@@ -2,13 +2,26 @@
 //! it.
 
 use crate::error::{Error, Result};
-use crate::model::Plane;
 use crate::model::sign::Sign;
 use crate::series::NOISE;
 use hysteron_core::{Operator, Turn, operators, table_len, turn_capacity};
+use serde::{Deserialize, Serialize};
+
+/// The discrete Preisach plane, equation (3).
+pub type Plane = hysteron_core::Plane<f64>;
 
 /// The state of weighted operators: their turning points.
 pub type OperatorState = hysteron_core::State<f64, Vec<Turn<f64>>>;
+
+/// The state of the operators before the first sample of the recording fitted: chosen or found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+pub struct FittedStart {
+    /// The turning points, normalised to `[0, K]` ([`crate::State::turning_points`]).
+    pub turning_points: Vec<f64>,
+    /// The input of the operators.
+    pub input: f64,
+}
 
 /// Weighted operators, offset and sign: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation
 /// (2).

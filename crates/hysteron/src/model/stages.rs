@@ -130,7 +130,7 @@ impl Model {
         let constants = self.behind.with(named)?;
         // What stands in front of the operators has fields of its own.
         let behind = constants.stages().behind;
-        self.behind = StageConstants::of(&Stages {
+        self.behind = StageConstants::from_stages(&Stages {
             behind,
             ..Stages::NONE
         });
@@ -153,7 +153,7 @@ impl Model {
     /// ([`Stages::declared`](hysteron_core::Stages::declared)).
     #[must_use]
     pub fn constants(&self) -> StageConstants<f64> {
-        StageConstants::of(&self.stages())
+        StageConstants::from_stages(&self.stages())
     }
 
     /// The input where the operators are at their lowest and at their highest: the temperature

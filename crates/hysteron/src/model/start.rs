@@ -1,18 +1,8 @@
 //! The state that a model starts from.
 
 use crate::error::Result;
+use crate::model::operators::FittedStart;
 use crate::model::{Model, State};
-use serde::{Deserialize, Serialize};
-
-/// The state of the operators before the first sample of the recording fitted: chosen or found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object in braces")]
-pub struct FittedStart {
-    /// The turning points, normalised to `[0, K]` ([`State::turning_points`]).
-    pub turning_points: Vec<f64>,
-    /// The input of the operators.
-    pub input: f64,
-}
 
 impl Model {
     /// The state that the model starts from: the one that its fit kept, or else every operator off.

@@ -35,6 +35,70 @@ impl From<OperatorState> for State {
     }
 }
 
+impl Model {
+    /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`
+    /// ([`State::input`]), to the last bit. The stages are at rest with the next sample.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.
+    ///
+    /// ```
+    /// # use hysteron::{Model, Operator, Plane, Sign};
+    /// # let plane = Plane::new(20.0, 80.0, 3)?;
+    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+    /// let mut state = model.start();
+    /// model.run(&mut state, &[70.0, 40.0, 55.0], &mut [0.0; 3])?;
+    /// let saved: Vec<f64> = state.turning_points().collect();
+    /// assert_eq!(model.restore(&saved, state.input())?, state);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    pub fn restore(&self, turning_points: &[f64], input: f64) -> Result<State> {
+        Ok(State::new(
+            self,
+            self.operators.restore(turning_points, input)?,
+        ))
+    }
+
+    /// Moves `state` by one sample. Returns the output, and whether the operators' input was
+    /// outside the plane. A plain model takes a number. A model with a thermal body also needs the
+    /// time step, and one that depends on a load needs the load.
+    ///
+    /// ```
+    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign};
+    /// let plane = Plane::new(1.0, 2.0, 2)?;
+    /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// assert_eq!(model.step(&mut model.start(), 2.0)?.output, 3.0);
+    ///
+    /// model.thermal = Some(FirstOrder { gain: 2.0, ..FirstOrder::default() });
+    /// let mut state = model.start();
+    /// model.step(&mut state, 1.0)?; // at rest at twice the drive
+    /// assert!(model.step(&mut state, 1.0).is_err()); // from here on time counts
+    /// let held = model.step(&mut state, Sample { dt: Some(50.0), ..1.0.into() })?;
+    /// assert_eq!(held.output, 3.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - [`Error::Core`] for an input that is not finite or a state of another model.
+    /// - [`Error::Thermal`] for a thermal body without `dt`, or a negative `dt`.
+    /// - [`Error::Fit`] for a load that is missing, out of range, or given to a model that has
+    ///   none.
+    ///
+    /// After an error the state is unchanged.
+    #[inline]
+    pub fn step(&self, state: &mut State, sample: impl Into<Sample>) -> Result<Output<f64>> {
+        state.step(self, sample.into())
+    }
+
+    /// The operators' states `γ_ij` in `[0, 1]`, in the order of the weights.
+    ///
+    /// # Errors
+    /// As [`Operators::operator_states`].
+    pub fn operator_states(&self, state: &State) -> Result<Vec<f64>> {
+        self.operators.operator_states(&state.operators)
+    }
+}
+
 impl State {
     pub(super) fn new(model: &Model, operators: OperatorState) -> Self {
         let depends = model.load.as_ref().filter(|load| load.parts().len() > 1);

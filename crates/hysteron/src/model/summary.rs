@@ -57,7 +57,7 @@ pub struct SeenFile {
 
 impl SeenFile {
     /// The file that a recording was read from, if any.
-    pub(crate) fn of(recording: &Recording) -> Option<Self> {
+    pub(crate) fn from_recording(recording: &Recording) -> Option<Self> {
         recording.source.as_ref().map(|source| Self {
             file: source.path.display().to_string(),
             sha256: source.sha256.clone(),

@@ -1,12 +1,9 @@
 //! Simulates any model, together with the series that it may need besides its input: time and load.
-//! Also computes the band around that output.
 
 use crate::error::{Error, Result};
-use crate::model::band::ends;
 use crate::model::body::needs_time;
 use crate::model::{Model, Sample, State};
 use crate::recording::Recording;
-use crate::remedy::{Remedy, Setting};
 use hysteron_core::Error as CoreError;
 use hysteron_core::{Clipped, ClippedCount};
 use std::borrow::Cow;
@@ -44,6 +41,28 @@ impl Model {
         Ok(output)
     }
 
+    /// The outputs for `input`, from the model's start ([`Model::start`]).
+    ///
+    /// # Errors
+    /// As [`Model::simulate_in`], which is for models that need time or load.
+    pub fn simulate(&self, input: &[f64]) -> Result<Vec<f64>> {
+        self.simulate_in(input, Surroundings::default())
+    }
+
+    /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
+    /// Returns how many inputs were clipped. For models that need neither time nor load.
+    ///
+    /// # Errors
+    /// As [`Model::run_in`].
+    pub fn run(
+        &self,
+        state: &mut State,
+        input: &[f64],
+        output: &mut [f64],
+    ) -> Result<ClippedCount> {
+        self.run_in(state, input, Surroundings::default(), output)
+    }
+
     /// The outputs over a recording from `state`, and how many inputs were clipped. Whatever is said
     /// of a model on a recording comes from here: the error of its fit, of `evaluate`, of what was
     /// held out.
@@ -53,7 +72,7 @@ impl Model {
         recording: &Recording,
     ) -> Result<(Vec<f64>, ClippedCount)> {
         let mut output = vec![0.0; recording.len()];
-        let around = Surroundings::of(self, recording);
+        let around = Surroundings::from_recording(self, recording);
         let clipped = self.run_in(state, &recording.input, around, &mut output)?;
         Ok((output, clipped))
     }
@@ -99,26 +118,6 @@ impl Model {
         Ok(count)
     }
 
-    /// The lower and the upper end of the 95 % band around [`Model::simulate_in`].
-    ///
-    /// # Errors
-    /// As [`Model::simulate_in`]; [`Error::Fit`] for a model without a band.
-    pub fn band_in(
-        &self,
-        input: &[f64],
-        surroundings: Surroundings<'_>,
-    ) -> Result<(Vec<f64>, Vec<f64>)> {
-        let Some(band) = self.band()? else {
-            let what = "the model does not say how certain it is";
-            let bootstrap = Setting::number("bootstrap", 200);
-            let remedy = Remedy::new("fit it again with {}", [bootstrap]);
-            return Err(Error::Fit(what.into()).remedied(remedy));
-        };
-        let output = self.simulate_in(input, surroundings)?;
-        let half = band.run(&self.start(), &self.seen(input, surroundings)?)?;
-        Ok(ends(&output, &half))
-    }
-
     /// The inputs as the operators see them: behind the thermal body, shifted by the load, on the
     /// uniform grid of the plane.
     ///
@@ -145,7 +144,7 @@ impl Model {
 impl<'a> Surroundings<'a> {
     /// Time and load of a recording, as far as `model` needs them.
     #[must_use]
-    pub fn of(model: &Model, recording: &'a Recording) -> Self {
+    pub fn from_recording(model: &Model, recording: &'a Recording) -> Self {
         Self {
             time: recording.time.as_deref().filter(|_| model.is_timed()),
             load: recording.load.as_deref().filter(|_| model.load.is_some()),
@@ -212,7 +211,7 @@ mod tests {
         let options = FitOptions {
             levels: 5,
             bootstrap: 10,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let model = Fit::from(&options).run(&recording).unwrap();
         let around = Surroundings {

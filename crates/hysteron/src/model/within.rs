@@ -72,7 +72,7 @@ impl Model {
         if self.is_plain() {
             return Ok(Cow::Borrowed(recording));
         }
-        let around = Surroundings::of(self, recording);
+        let around = Surroundings::from_recording(self, recording);
         Ok(Cow::Owned(Recording {
             input: self.seen(&recording.input, around)?.into_owned(),
             output: self.before_stages(recording)?,

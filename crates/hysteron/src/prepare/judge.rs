@@ -227,7 +227,7 @@ pub(super) fn small() -> FitOptions {
         levels: LEVELS,
         smooth: SOME_SMOOTHNESS,
         start: Start::Unknown,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     }
 }
 

@@ -69,8 +69,8 @@ pub(super) fn estimate(
     step: f64,
     progress: Progress<'_>,
 ) -> Result<Estimate> {
-    let told = |_: &'static str, _: f64| progress.tell("sensor lag", f64::NAN);
-    let progress = Progress::new(&told);
+    let report = |_: &'static str, _: f64| progress.tell("sensor lag", f64::NAN);
+    let progress = Progress::new(&report);
     let error = |tau: f64| -> Result<f64> {
         let mut candidate = recording.clone();
         candidate.input = undo(&recording.input, step, tau)?;
@@ -123,7 +123,7 @@ pub(super) fn estimate(
 fn rmse(recording: &Recording, progress: Progress<'_>) -> Result<f64> {
     let options = FitOptions {
         levels: LEVELS,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let model = fit_weights(std::slice::from_ref(recording), &options, progress)?;
     model

@@ -8,11 +8,12 @@
 //! If time explains the residual and the path does not, it comes from rate. If both explain it
 //! equally, it comes from a plane that is too coarse or an unknown start.
 
-use super::{PrepareOptions, Step, prepare};
+use super::judge::Judge;
+use super::options::{PrepareOptions, Step};
+use super::single;
 use crate::error::Result;
 use crate::identify::{Fit, FitOptions};
 use crate::model::Surroundings;
-use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::NOISE;
 use crate::series::range;
@@ -78,15 +79,18 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
         spikes: Step::Auto,
         ..PrepareOptions::all(Step::Off)
     };
-    let (recording, _) = prepare(recording, &without_spikes, Progress::NONE)?;
+    recording.check()?;
+    let mut judge = Judge::new(recording);
+    let mut recording = recording.clone();
+    single::repair(&mut recording, &without_spikes, &mut judge);
     let Some(time) = &recording.time else {
         return Ok(None);
     };
     if time.len() < FEWEST || time[time.len() - 1] <= time[0] {
         return Ok(None);
     }
-    let model = Fit::from(FitOptions::default()).run(&recording)?;
-    let around = Surroundings::of(&model, &recording);
+    let model = Fit::from(FitOptions::plain()).run(&recording)?;
+    let around = Surroundings::from_recording(&model, &recording);
     let modelled = model.simulate_in(&recording.input, around)?;
     let pairs = recording.output.iter().zip(&modelled);
     let residual: Vec<f64> = pairs.map(|(y, m)| y - m).collect();

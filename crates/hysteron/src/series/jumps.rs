@@ -69,12 +69,7 @@ pub(crate) fn remove_bursts(values: &mut [f64]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn swings() -> Vec<f64> {
-        (0..2000)
-            .map(|n| 40.0 * (f64::from(n) * 0.02).sin())
-            .collect()
-    }
+    use crate::series::test_series::swings;
 
     #[test]
     fn bursts_of_either_sign_go_and_steps_stay() {

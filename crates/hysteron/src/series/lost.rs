@@ -166,12 +166,7 @@ fn rise(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn swings() -> Vec<f64> {
-        (0..2000)
-            .map(|n| 40.0 * (f64::from(n) * 0.02).sin())
-            .collect()
-    }
+    use crate::series::test_series::swings;
 
     #[test]
     fn readings_that_were_held_are_found_and_rests_are_not() {

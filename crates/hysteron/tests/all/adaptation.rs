@@ -158,7 +158,7 @@ fn a_load_is_found_from_the_output_alone() {
     let options = FitOptions {
         levels: 12,
         range: Some((20.0, 80.0)),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let model = Fit::from(&options).run(&[at(0.0), at(1.0)]).unwrap();
     let target = Recording {
@@ -194,7 +194,7 @@ fn the_adapted_file_says_how_it_came_about() {
     let options = FitOptions {
         levels: 12,
         bootstrap: 20,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let model = Fit::from(&options)
         .run(&recorded(&wire(1.0, 0), Start::Off))
@@ -405,7 +405,7 @@ fn one_cycle_ahead_a_refit_is_as_good_as_a_fit_to_the_last_cycle() {
         let options = FitOptions {
             start: Start::On,
             range: Some((plane.min(), plane.max())),
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         Fit::from(&options).run(recording).unwrap()
     };
@@ -500,7 +500,7 @@ fn a_measured_alloy_is_followed_to_another_stress() {
         let columns = Columns::new("temperature_C", "strain_percent");
         Recording::read(&path, columns, Repair::Refuse).unwrap().0
     });
-    let model = Fit::from(FitOptions::default()).run(&before).unwrap();
+    let model = Fit::from(FitOptions::plain()).run(&before).unwrap();
     let adapted = adapt(&model, &after, &AdaptOptions::default(), Progress::NONE).unwrap();
     // docs/adaptation.md: a tenth.
     assert!(

@@ -272,8 +272,8 @@ fn an_error_names_its_lane_and_no_state_has_moved() {
 fn what_does_not_fit_is_refused() {
     let mut rng = Rng::seed_from_u64(1);
     let plain = model(&mut rng, Kind::Plain);
-    let mut batch = BatchModel::of(plain.clone(), 3).unwrap();
-    let many = BatchModel::of(plain, usize::MAX).map_err(|error| error.code());
+    let mut batch = BatchModel::new(plain.clone(), 3).unwrap();
+    let many = BatchModel::new(plain, usize::MAX).map_err(|error| error.code());
     assert_eq!(many.map(|_| ()), Err(23));
     assert_eq!((batch.lanes(), batch.models().len()), (3, 3));
     let around = |load| Surroundings {
@@ -302,7 +302,7 @@ fn what_does_not_fit_is_refused() {
 #[test]
 fn a_lane_without_its_load_says_what_is_needed() {
     let loaded = Model::from_json(LOADED).unwrap();
-    let mut batch = BatchModel::of(loaded, 2).unwrap();
+    let mut batch = BatchModel::new(loaded, 2).unwrap();
     let error = batch.step(&[40.0; 2], &mut [0.0; 2]).unwrap_err();
     assert!(
         error.to_string().starts_with("lane number 0 (from 0): "),

@@ -13,7 +13,7 @@ fn folder(name: &str) -> PathBuf {
 /// What reading a recording and fitting a model to it says, without the path.
 fn refusal(path: &Path, columns: Columns<'_>) -> String {
     let read = Recording::read(path, columns, Repair::Refuse);
-    let done = read.and_then(|(recording, _)| Fit::from(FitOptions::default()).run(&recording));
+    let done = read.and_then(|(recording, _)| Fit::from(FitOptions::plain()).run(&recording));
     let said = done.expect_err(&path.display().to_string()).to_string();
     let place = path.display().to_string();
     assert!(said.contains(&place), "{said}");

@@ -73,7 +73,7 @@ fn intervals_hold_what_they_say() {
                 levels: LEVELS,
                 range: Some((20.0, 80.0)),
                 bootstrap: 100,
-                ..FitOptions::default()
+                ..FitOptions::plain()
             };
             let found = Fit::from(&options)
                 .run(&Recording::new(input, output).unwrap())
@@ -130,7 +130,7 @@ fn an_unknown_start_costs_little() {
                     levels: LEVELS,
                     range: Some((20.0, 80.0)),
                     start,
-                    ..FitOptions::default()
+                    ..FitOptions::plain()
                 };
                 let found = Fit::from(&options).run(&recording).unwrap();
                 // The fit may set each operator for itself. A start of a model is a history, which
@@ -181,7 +181,7 @@ fn an_unknown_start_with_weights_of_either_sign() {
         solver: Solver::Ols,
         start: Start::Unknown,
         smooth: (0.0, 1e-8).into(),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let found = Fit::from(&options).run(&recording).unwrap();
     let fitted = found.fit.as_ref().unwrap().rmse;
@@ -223,7 +223,7 @@ fn recordings_with_starts_of_their_own_are_one_experiment() {
             levels: LEVELS,
             range: Some((20.0, 80.0)),
             start,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         Fit::from(&options).run(&recordings).unwrap()
     };
@@ -276,7 +276,7 @@ fn weights_that_depend_on_a_load_are_recovered() {
         load_law: LoadLaw::Weights,
         // The data are exact, so nothing has to keep the weights small.
         ridge: 0.0,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let found = Fit::from(&options).run(&recordings).unwrap();
     assert_eq!(found.load.as_ref().unwrap().range(), (6.0, 10.0));

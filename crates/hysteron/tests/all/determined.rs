@@ -43,7 +43,7 @@ fn the_rank_is_that_of_a_fit() {
                 levels,
                 start: Start::Off,
                 bootstrap: 5,
-                ..FitOptions::default()
+                ..FitOptions::plain()
             };
             let model = Fit::from(options).run(&recording).unwrap();
             let fitted = model.fit.unwrap().confidence.unwrap();

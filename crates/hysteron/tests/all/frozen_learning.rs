@@ -190,7 +190,7 @@ fn open_recordings_are_not_frozen() {
         let (recording, _) = Recording::read(path, columns, hysteron::Repair::default()).unwrap();
         let options = FitOptions {
             levels: 10,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let model = Fit::from(&options).run(&recording).unwrap();
         for learner in LEARNERS {

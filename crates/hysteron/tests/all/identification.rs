@@ -31,7 +31,7 @@ fn options(operator: Operator, levels: usize, solver: Solver) -> FitOptions {
         range: Some((20.0, 80.0)),
         solver,
         ridge: 0.0,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     }
 }
 
@@ -138,7 +138,7 @@ fn operators_never_excited_get_no_weight() {
 fn what_cannot_be_fitted_is_refused() {
     let recording = |input: Vec<f64>| Recording::new(input, vec![1.0, 2.0, 4.0]);
     let constant = recording(vec![5.0; 3]).unwrap();
-    let error = Fit::from(FitOptions::default()).run(&constant).unwrap_err();
+    let error = Fit::from(FitOptions::plain()).run(&constant).unwrap_err();
     assert!(
         error
             .to_string()
@@ -152,7 +152,7 @@ fn what_cannot_be_fitted_is_refused() {
     for levels in [0, 1, 1_000_000] {
         let error = refuse(FitOptions {
             levels,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         });
         assert!(
             matches!(error, Error::Core(hysteron_core::Error::Levels(_))),
@@ -161,12 +161,12 @@ fn what_cannot_be_fitted_is_refused() {
     }
     let error = refuse(FitOptions {
         levels: 1000,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     });
     assert!(matches!(error, Error::Fit(_)), "{error}");
     let error = refuse(FitOptions {
         range: Some((3.0, 1.0)),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     });
     assert!(
         matches!(error, Error::Core(hysteron_core::Error::Range)),
@@ -174,7 +174,7 @@ fn what_cannot_be_fitted_is_refused() {
     );
     let error = refuse(FitOptions {
         offset: Some(f64::NAN),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     });
     assert!(matches!(error, Error::Fit(_)), "{error}");
 }
@@ -199,7 +199,7 @@ fn long_rests_do_not_spoil_the_fit() {
                 levels,
                 solver,
                 ridge: 0.0,
-                ..FitOptions::default()
+                ..FitOptions::plain()
             };
             let model = Fit::from(&options).run(&recording).unwrap();
             assert!(

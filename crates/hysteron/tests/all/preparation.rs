@@ -104,7 +104,7 @@ fn recordings() -> Vec<(&'static str, Recording)> {
 }
 
 fn nrmse(recording: &Recording) -> f64 {
-    let model = Fit::from(FitOptions::default()).run(recording).unwrap();
+    let model = Fit::from(FitOptions::plain()).run(recording).unwrap();
     model.fit.unwrap().nrmse_percent
 }
 

@@ -56,7 +56,7 @@ fn the_limit_along_the_diagonal_is_a_prandtl_ishlinskii_model() {
             levels,
             smooth: 1e6.into(),
             ridge: 0.0,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let model = Fit::from(options).run(&recording).unwrap();
         let weight = |i: usize, j: usize| model.weights()[hysteron::operator_index(i, j)];
@@ -85,7 +85,7 @@ fn strengths_do_not_depend_on_the_unit_of_the_output() {
     let options = FitOptions {
         levels: 12,
         smooth: (1e-6, 1e-8).into(),
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let fit = Fit::from(options);
     let (one, two) = (fit.run(&recording).unwrap(), fit.run(&other).unwrap());

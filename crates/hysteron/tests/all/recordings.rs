@@ -26,7 +26,7 @@ fn the_optimum_is_scipys() {
                 range: Some((0.0, 3.5)),
                 solver,
                 ridge: 0.0,
-                ..FitOptions::default()
+                ..FitOptions::plain()
             };
             let model = Fit::from(&options).run(&recording).unwrap();
             let rmse = model.fit.unwrap().rmse;
@@ -51,7 +51,7 @@ fn with_a_free_offset_kp_fits_as_mkp_does() {
         let options = FitOptions {
             operator,
             levels: 10,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         Fit::from(&options)
             .run(&recording)

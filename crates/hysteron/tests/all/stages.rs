@@ -277,7 +277,7 @@ fn a_load_that_was_left_out_is_predicted_by_the_shift() {
     let fitted = [50.0, 100.0, 200.0].map(under_load);
     let unseen = under_load(150.0);
     let error = |law| {
-        let model = Fit::from(FitOptions::default())
+        let model = Fit::from(FitOptions::plain())
             .load_law(law)
             .run(&fitted)
             .unwrap();
@@ -314,7 +314,7 @@ fn levels_move_to_where_a_sharp_loop_moves() {
     let output = model.simulate(&input).unwrap();
     let recording = Recording::new(input, output).unwrap();
     let error = |spacing| {
-        let fit = Fit::from(FitOptions::default())
+        let fit = Fit::from(FitOptions::plain())
             .spacing(spacing)
             .run(&recording);
         let model = fit.unwrap();
@@ -360,13 +360,13 @@ fn creeping() -> Recording {
 #[test]
 fn creep_is_taken_where_there_is_some_and_left_where_there_is_none() {
     let recording = creeping();
-    let fit = Fit::from(FitOptions::default())
+    let fit = Fit::from(FitOptions::plain())
         .levels(10)
         .creep(Auto)
         .lag(Auto);
     let model = fit.run(&recording).unwrap();
     assert!(!model.creep().is_empty());
-    let without = Fit::from(FitOptions::default())
+    let without = Fit::from(FitOptions::plain())
         .levels(10)
         .run(&recording)
         .unwrap();
@@ -398,7 +398,7 @@ fn a_start_that_was_found_is_kept() {
     let mut output = vec![0.0; input.len()];
     model.run(&mut state, &input, &mut output).unwrap();
     let recording = Recording::new(input.clone(), output).unwrap();
-    let fit = Fit::from(FitOptions::default())
+    let fit = Fit::from(FitOptions::plain())
         .levels(10)
         .start(Start::Unknown);
     let found = fit.run(&recording).unwrap();
@@ -524,7 +524,7 @@ fn a_curve_is_taken_only_where_there_is_one() {
         let options = FitOptions {
             levels: 10,
             curve: Choice::Auto,
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let fitted = Fit::from(&options).run(&recording).unwrap();
         let found = fitted.constants().get("curve_sums").len();

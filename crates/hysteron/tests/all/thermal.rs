@@ -63,7 +63,7 @@ fn a_known_body_is_found_again_through_noise() {
     let (mut recording, clean) = recorded(2600);
     let options = FitOptions {
         levels: 10,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let model = Fit::from(&options)
         .thermal(true)
@@ -98,7 +98,7 @@ fn ramp_and_step_of_a_measured_wire_validate_each_other() {
         };
         Recording::read(&path, columns, Repair::Refuse).unwrap().0
     });
-    let options = FitOptions::default();
+    let options = FitOptions::plain();
     // Fitted on the other one, the static model errs by 39 % and 32 % of the range.
     for (fitted, held_out) in [(&ramp, &step), (&step, &ramp)] {
         let percent = |model: &Model| {
@@ -133,7 +133,7 @@ fn one_loop_does_not_tell_heating_from_cooling_and_says_so() {
     let (recording, _) = recorded(1400); // the ramp up and down
     let options = FitOptions {
         levels: 10,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let model = Fit::from(&options).thermal(true).run(&[recording]).unwrap();
     let body = model.thermal.unwrap();
@@ -146,7 +146,7 @@ fn one_loop_does_not_tell_heating_from_cooling_and_says_so() {
 fn what_cannot_be_fitted_is_refused() {
     let recording = Recording::new(vec![0.0, 1.0, 0.0], vec![0.0, 1.0, 0.5]).unwrap();
     let fault = |recording: &Recording| {
-        let fitted = Fit::from(&FitOptions::default())
+        let fitted = Fit::from(&FitOptions::plain())
             .thermal(true)
             .run(std::slice::from_ref(recording));
         fitted.unwrap_err().to_string()
@@ -254,7 +254,7 @@ fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
     recording.time = Some(time);
     let options = FitOptions {
         levels: 10,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let found = Fit::from(&options).thermal(true).run(&[recording]).unwrap();
     let body = found.thermal.unwrap();
@@ -279,7 +279,7 @@ fn a_model_at_one_load_keeps_its_body() {
         .collect();
     let options = FitOptions {
         levels: 6,
-        ..FitOptions::default()
+        ..FitOptions::plain()
     };
     let model = Fit::from(&options).thermal(true).run(&recordings).unwrap();
     let light = model.at_load(6.0).unwrap();

@@ -57,7 +57,7 @@ fn the_choice_beats_the_plain_fit_on_noise() {
         let all = std::slice::from_ref(&noisy);
         let candidates = Candidates::new(None, None);
         let (options, validation) =
-            cross_validate(all, &FitOptions::default(), &candidates, Progress::NONE).unwrap();
+            cross_validate(all, &FitOptions::plain(), &candidates, Progress::NONE).unwrap();
         assert!(validation.whole_branches && !options.smooth.is_none());
         // What is left out has noise too: 3 % of the range.
         assert!(
@@ -65,7 +65,7 @@ fn the_choice_beats_the_plain_fit_on_noise() {
             "{validation:?}"
         );
         plain += error(
-            &Fit::from(FitOptions::default()).run(&noisy).unwrap(),
+            &Fit::from(FitOptions::plain()).run(&noisy).unwrap(),
             &material,
         );
         chosen += error(&Fit::from(&options).run(&noisy).unwrap(), &material);
@@ -84,7 +84,7 @@ fn strength_means_the_same_at_any_number_of_levels() {
             let options = FitOptions {
                 levels,
                 smooth: (0.0, 1e-5).into(),
-                ..FitOptions::default()
+                ..FitOptions::plain()
             };
             let model = Fit::from(&options).run(&noisy).unwrap();
             model.simulate(&noisy.input).unwrap()
@@ -106,7 +106,7 @@ fn strength_means_the_same_at_any_number_of_levels() {
 #[test]
 fn many_levels_find_a_smoothness_that_is_as_good_as_any() {
     let noisy = [recording(&material(), 0.02, 5)];
-    let options = FitOptions::default();
+    let options = FitOptions::plain();
     let rated = |smooth| {
         let candidates = Candidates::new(Some(45), smooth);
         let found = cross_validate(&noisy, &options, &candidates, Progress::NONE);
@@ -133,7 +133,7 @@ fn samples_are_left_out_with_their_branch() {
     let noisy = recording(&material, 0.01, 3);
     let found = left_out(
         std::slice::from_ref(&noisy),
-        &FitOptions::default(),
+        &FitOptions::plain(),
         None,
         Progress::NONE,
     )
@@ -151,7 +151,7 @@ fn samples_are_left_out_with_their_branch() {
     }
     let again = left_out(
         std::slice::from_ref(&other),
-        &FitOptions::default(),
+        &FitOptions::plain(),
         None,
         Progress::NONE,
     )
@@ -163,14 +163,14 @@ fn samples_are_left_out_with_their_branch() {
     assert!(
         left_out(
             &[Recording::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 2.0]).unwrap()],
-            &FitOptions::default(),
+            &FitOptions::plain(),
             None,
             Progress::NONE
         )
         .is_err()
     );
     // Stages are not left out in silence.
-    let plain = FitOptions::default;
+    let plain = FitOptions::plain;
     for options in [
         FitOptions {
             spacing: Spacing::Auto,

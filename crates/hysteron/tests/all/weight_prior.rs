@@ -64,7 +64,7 @@ fn a_prior_helps_and_does_not_stand_in_the_way() {
         let noise = |y: &mut f64| *y += rng.random_range(-0.17..0.17);
         output.iter_mut().for_each(noise);
         let whole = Recording::new(input, output).unwrap();
-        let prior = WeightPrior::of(&models).unwrap();
+        let prior = WeightPrior::from_models(&models).unwrap();
         let fit = Fit::new()
             .levels(LEVELS)
             .range(0.0, 10.0)
@@ -107,7 +107,7 @@ fn the_fit_is_the_minimum_of_what_it_says() {
                 Model::new(Operator::Mkp, *model.plane(), weights, 0.0, Sign::Positive).unwrap();
             model.fit = fit;
         }
-        let prior = WeightPrior::of(&models).unwrap();
+        let prior = WeightPrior::from_models(&models).unwrap();
         let input = walk(rng, 30);
         let output: Vec<f64> = input.iter().map(|_| rng.random_range(0.0..20.0)).collect();
         let recording = Recording::new(input, output).unwrap();
@@ -154,7 +154,7 @@ fn the_fit_is_the_minimum_of_what_it_says() {
 fn what_makes_no_prior_is_refused() {
     let rng = &mut ChaCha8Rng::seed_from_u64(1);
     let models = fleet(rng, Operator::Mkp, Sign::Positive, 12);
-    let refused = |models: &[Model]| WeightPrior::of(models).unwrap_err().to_string();
+    let refused = |models: &[Model]| WeightPrior::from_models(models).unwrap_err().to_string();
     assert!(refused(&[]).contains("0 models"));
     assert!(refused(&models[..9]).contains("9 models"));
     let mut other = models.clone();
@@ -169,7 +169,7 @@ fn what_makes_no_prior_is_refused() {
     let input = walk(rng, 40);
     let recording = Recording::new(input.clone(), models[0].simulate(&input).unwrap()).unwrap();
     let model = Fit::new()
-        .prior(WeightPrior::of(&same).unwrap())
+        .prior(WeightPrior::from_models(&same).unwrap())
         .run(&recording)
         .unwrap();
     for (a, b) in model.weights().iter().zip(models[0].weights()) {
@@ -182,6 +182,6 @@ fn what_makes_no_prior_is_refused() {
     };
     let fit = Fit::new()
         .robust(false)
-        .prior(WeightPrior::of(&models).unwrap());
+        .prior(WeightPrior::from_models(&models).unwrap());
     assert!(fit.run(&loaded).unwrap_err().to_string().contains("load"));
 }

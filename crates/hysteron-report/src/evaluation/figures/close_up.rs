@@ -61,11 +61,11 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     keys.push(Key::Line(GUIDE, "largest discrepancy of hold".into()));
     sheet.legend(&keys);
 
-    let x = time_axis(&view.time_label, Span::of(time));
-    let upper_y = Axis::new(&view.output, Span::of(output).padded(0.08));
+    let x = time_axis(&view.time_label, Span::covering(time));
+    let upper_y = Axis::new(&view.output, Span::covering(output).padded(0.08));
     let lower_y = Axis::new(
         &view.input,
-        Span::of([input, hold, anticipate].concat().iter()).padded(0.06),
+        Span::covering([input, hold, anticipate].concat().iter()).padded(0.06),
     );
     let left = MARGIN + left_of(&upper_y, OUTPUT_HEIGHT).max(left_of(&lower_y, INPUT_HEIGHT));
     let upper = Rect {

@@ -108,7 +108,10 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         Criterion::LeftOut => "RMSE left out",
         Criterion::Evidence => "RMSE",
     });
-    let y = Axis::new(&error, Span::of(all()).with(0.0).padded(0.05).from(0.0));
+    let y = Axis::new(
+        &error,
+        Span::covering(all()).with(0.0).padded(0.05).from(0.0),
+    );
     let name = Labelled {
         name: name.into(),
         unit: None,

@@ -94,5 +94,5 @@ fn draw_input(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
 
 /// The range of the differences, with zero in it.
 fn around_zero<'a>(values: impl IntoIterator<Item = &'a f64>) -> Span {
-    Span::of(values).with(0.0).padded(0.06)
+    Span::covering(values).with(0.0).padded(0.06)
 }

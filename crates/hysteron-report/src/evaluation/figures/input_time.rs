@@ -44,6 +44,6 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         (&inverse.anticipate.input_model, ANTICIPATE),
     ];
     let values = curves.iter().flat_map(|(values, _)| *values);
-    let y = Axis::new(&view.input, Span::of(values).padded(0.04));
+    let y = Axis::new(&view.input, Span::covering(values).padded(0.04));
     Some(plot(sheet, view, y, &curves, &inverse.moving, HEIGHT).end())
 }

@@ -65,9 +65,9 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     }
 
     sheet.legend(&keys);
-    let x = Axis::new(&view.input, Span::of(&input).padded(0.03));
+    let x = Axis::new(&view.input, Span::covering(&input).padded(0.03));
     let outputs = loops.iter().flat_map(|(output, _)| output);
-    let y = Axis::new(&view.output, Span::of(outputs).padded(0.04));
+    let y = Axis::new(&view.output, Span::covering(outputs).padded(0.04));
     let panel = single(sheet, x, y, PLOT_HEIGHT);
     for (output, stroke) in &loops {
         panel.loops(&mut sheet.canvas, &input, output, stroke);

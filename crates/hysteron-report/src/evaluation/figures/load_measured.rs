@@ -138,10 +138,10 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         &view.recording.output,
         &view.evaluation.output_model,
     );
-    let x = Axis::new(&view.input, Span::of(input).padded(0.03));
+    let x = Axis::new(&view.input, Span::covering(input).padded(0.03));
     let y = Axis::new(
         &view.output,
-        Span::of(output.iter().chain(modelled)).padded(0.04),
+        Span::covering(output.iter().chain(modelled)).padded(0.04),
     );
     let panel = single(sheet, x, y, PLOT_HEIGHT);
     // The modelled loops over all measured ones.

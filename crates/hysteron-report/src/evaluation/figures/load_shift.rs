@@ -75,9 +75,9 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         return None;
     }
     let quantity = Labelled::first([&load.quantity, &load.quantity], "load");
-    let x = Axis::new(&quantity, Span::of(&curves.loads).padded(0.05));
+    let x = Axis::new(&quantity, Span::covering(&curves.loads).padded(0.05));
     let shift = view.input.difference("shift s");
-    let y = Axis::new(&shift, Span::of(&curves.shifts).padded(0.08));
+    let y = Axis::new(&shift, Span::covering(&curves.shifts).padded(0.08));
 
     sheet.legend(&[
         Key::Line(CURVE, "shift of the model".into()),

@@ -39,10 +39,10 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     );
     let band = view.band_edges();
     let edges = band.iter().flatten().flatten();
-    let x = Axis::new(&view.input, Span::of(input).padded(0.03));
+    let x = Axis::new(&view.input, Span::covering(input).padded(0.03));
     let y = Axis::new(
         &view.output,
-        Span::of(output.iter().chain(modelled).chain(edges)).padded(0.04),
+        Span::covering(output.iter().chain(modelled).chain(edges)).padded(0.04),
     );
     let panel = single(sheet, x, y, PLOT_HEIGHT);
     if let Some(band) = &band {

@@ -47,7 +47,10 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let band = view.band_edges();
     let edges = band.iter().flatten().flatten();
     let values = curves.iter().flat_map(|(values, _)| *values);
-    let y = Axis::new(&view.output, Span::of(values.chain(edges)).padded(0.04));
+    let y = Axis::new(
+        &view.output,
+        Span::covering(values.chain(edges)).padded(0.04),
+    );
     let panel = empty(sheet, view, y, HEIGHT);
     if let Some(band) = &band {
         panel.band(&mut sheet.canvas, &view.time, band, BAND);

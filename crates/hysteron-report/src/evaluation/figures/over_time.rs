@@ -54,7 +54,7 @@ pub(super) fn plot(
 
 /// An empty panel over all of the recording's time.
 pub(super) fn empty(sheet: &mut Sheet, view: &View<'_>, y: Axis, height: f64) -> Panel {
-    let x = time_axis(&view.time_label, Span::of(view.time.iter()));
+    let x = time_axis(&view.time_label, Span::covering(view.time.iter()));
     single(sheet, x, y, height)
 }
 

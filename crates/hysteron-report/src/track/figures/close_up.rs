@@ -52,14 +52,14 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let pairs = outputs.iter().zip(&references);
     let errors: Vec<Vec<f64>> = pairs.map(|(y, r)| difference(y, r)).collect();
     let (error, cut) = robust(errors.iter().map(Vec::as_slice));
-    let asked = Span::of(references.iter().flatten());
+    let asked = Span::covering(references.iter().flatten());
     let span = Span {
         low: asked.low + error.low,
         high: asked.high + error.high,
     }
     .padded(0.04);
     let [x, y] = [
-        time_axis(&view.time, Span::of(&time)),
+        time_axis(&view.time, Span::covering(&time)),
         Axis::new(&view.output, span),
     ];
 

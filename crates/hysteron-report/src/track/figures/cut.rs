@@ -46,7 +46,9 @@ pub(super) fn named(run: &NamedTrace<'_>, remark: String) -> Heading {
 /// Half of the panels decide: a few controllers that are far off throughout must not make the
 /// others illegible.
 pub(crate) fn robust<'a>(panels: impl Iterator<Item = &'a [f64]> + Clone) -> (Span, bool) {
-    let all = Span::of(panels.clone().flatten()).with(0.0).padded(0.06);
+    let all = Span::covering(panels.clone().flatten())
+        .with(0.0)
+        .padded(0.06);
     let mut seen: Vec<f64> = panels.filter_map(far).collect();
     seen.sort_unstable_by(f64::total_cmp);
     let seen = ROOM

@@ -69,11 +69,11 @@ fn words_of_prediction(view: &View<'_>) -> Option<[String; 2]> {
 fn draw_prediction(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let of = |run: &NamedTrace<'_>| difference(&run.trace.prediction, &run.trace.output);
     let runs = view.tracking.runs.iter().map(|run| (run, of(run)));
-    let told: Vec<_> = runs
+    let predicted: Vec<_> = runs
         .filter(|(_, values)| values.iter().any(|value| value.is_finite()))
         .collect();
     let words = ["predicted − reached output", "predicted "];
-    (!told.is_empty()).then(|| differences(view, sheet, &told, words))
+    (!predicted.is_empty()).then(|| differences(view, sheet, &predicted, words))
 }
 
 /// A panel for each of `runs`; `what` is what the difference is, `told_apart` its key beside others

@@ -138,7 +138,7 @@ fn curves_and_status(
     let drawn: Vec<[Vec<f64>; 2]> = runs.iter().map(|run| curves(run.trace)).collect();
     let y = Axis::new(
         quantity,
-        Span::of(drawn.iter().flatten().flatten()).padded(0.05),
+        Span::covering(drawn.iter().flatten().flatten()).padded(0.05),
     );
     let headings: Vec<Heading> = runs.iter().map(|run| heading(run, &flags)).collect();
     // Below a panel for the rows, beside it for their words and the label of the axis.

@@ -36,12 +36,12 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let runs = view.tracking.runs;
     let references = || runs.iter().flat_map(|run| &run.trace.reference);
     let outputs = || runs.iter().flat_map(|run| &run.trace.output);
-    let mut span = Span::of(references().chain(outputs()));
+    let mut span = Span::covering(references().chain(outputs()));
     let errors: Vec<Vec<f64>> = runs.iter().map(error_of).collect();
     let (error, cut) = robust(errors.iter().map(Vec::as_slice));
     if cut {
         // A range around the reference as wide as the range of the errors.
-        let asked = Span::of(references());
+        let asked = Span::covering(references());
         span = Span {
             low: span.low.max(asked.low + error.low),
             high: span.high.min(asked.high + error.high),

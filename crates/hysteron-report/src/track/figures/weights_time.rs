@@ -43,7 +43,7 @@ struct Change {
 }
 
 impl Change {
-    fn of(trace: &Trace, plane: &Plane) -> Self {
+    fn new(trace: &Trace, plane: &Plane) -> Self {
         let block = plane.levels().div_ceil(ROWS);
         let totals = |weights: &[f64]| {
             let mut rows = vec![0.0; plane.levels().div_ceil(block)];
@@ -104,7 +104,7 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     let plane = view.tracking.plane;
     let runs: Vec<(&NamedTrace<'_>, Change)> = view
         .adapting()
-        .map(|run| (run, Change::of(run.trace, plane)))
+        .map(|run| (run, Change::new(run.trace, plane)))
         .collect();
     if runs.is_empty() {
         return None;
@@ -118,7 +118,7 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         .flat_map(|(_, change)| change.sum.iter().chain(&change.offset));
     let y = Axis::new(
         &view.output.renamed("change"),
-        Span::of(curves).with(0.0).padded(0.06),
+        Span::covering(curves).with(0.0).padded(0.06),
     );
     let scale = Axis::new(&view.output.renamed("change of a row"), span);
     let room = room(&scale, MAP);
@@ -289,7 +289,7 @@ mod tests {
         let plane = Plane::new(0.0, 2.0, 3).unwrap();
         let before = snapshot(0.0, 5.0, &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
         let after = snapshot(4.0, 4.5, &[1.5, 1.0, 0.0, 2.0, 2.0, 4.0]);
-        let change = Change::of(&trace(vec![before, after]), &plane);
+        let change = Change::new(&trace(vec![before, after]), &plane);
         assert_eq!(change.rows, [[0.0; 3], [0.5, -1.0, 5.0]]);
         assert_eq!(
             (change.sum, change.offset),
@@ -301,7 +301,7 @@ mod tests {
     fn rows_of_a_fine_plane_are_taken_together() {
         let plane = Plane::new(0.0, 1.0, 100).unwrap();
         let [before, after] = [0.0, 1.0].map(|w| snapshot(w, 0.0, &vec![w; plane.operators()]));
-        let change = Change::of(&trace(vec![before, after]), &plane);
+        let change = Change::new(&trace(vec![before, after]), &plane);
         // Blocks of three rows: 1 + 2 + 3 operators in the first, the 100 of row 100 alone in the
         // last.
         assert_eq!(change.rows[1].len(), 34);

@@ -25,3 +25,6 @@ impl<'a> Columns<'a> {
         }
     }
 }
+
+/// Index of the time among the series.
+pub(super) const TIME: usize = 2;

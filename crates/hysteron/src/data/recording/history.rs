@@ -1,7 +1,7 @@
 //! The order of rows is history: it is never changed. Where the clock says that rows are no
 //! continuation of those before them, another segment begins.
 
-use super::samples::TIME;
+use super::columns::TIME;
 use crate::recording::long_gaps;
 
 /// What the clock tells of rows, by their index.
@@ -20,7 +20,7 @@ pub(super) struct History {
 }
 
 impl History {
-    pub(super) fn of(series: &[Vec<f64>]) -> Self {
+    pub(super) fn new(series: &[Vec<f64>]) -> Self {
         let time = &series[TIME];
         let mut history = Self::default();
         let Self {
@@ -94,7 +94,7 @@ mod tests {
 
     fn of(time: &[f64], value: &[f64]) -> History {
         let series = [value, value, time].map(<[f64]>::to_vec);
-        History::of(&series)
+        History::new(&series)
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::data::output::TableWriter;
 use crate::data::table::{Column, Row, TableReader};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
+use crate::series::interpolate::interpolate;
 
 /// All columns of the file that a recording was read from, in their order and with their names. A
 /// unit from a row of units is appended to the name. A time in another unit has been converted to
@@ -18,7 +19,7 @@ pub struct Others {
 
 impl Others {
     /// No rows yet. `columns` are the recording's input, output, time and load in the table.
-    pub(super) fn of(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
+    pub(super) fn new(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
         Self {
             header: table.names_with_units(),
             places: columns.map(|column| column.map(Column::place)),
@@ -127,7 +128,7 @@ impl Others {
             };
             let numbers: Option<Vec<f64>> = (begin..end).map(number).collect();
             let (times, wanted) = (read.time.as_deref()?, prepared.time.as_deref()?);
-            all.extend(super::samples::interpolate(times, &numbers?, wanted));
+            all.extend(interpolate(times, &numbers?, wanted));
             begin = end;
         }
         Some(all)

@@ -3,11 +3,12 @@
 use crate::data::recording::columns::Columns;
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{Note, NoteKind, Repair};
-use crate::data::recording::samples::{Samples, interpolate};
+use crate::data::recording::samples::Samples;
 use crate::data::table::{Column, Memory, ReadOptions, TableReader};
 use crate::error::{Error, Place, Result};
 use crate::recording::{Origin, Quantity, Recording, Source};
 use crate::remedy::{Remedy, Setting};
+use crate::series::interpolate::interpolate;
 use bytes::Bytes;
 use std::path::Path;
 
@@ -238,7 +239,7 @@ fn read_parts(
         (Some(name), Some(at)) => quantity(&table, name, at),
         _ => Quantity::named("load"),
     };
-    let others = with_others.then(|| Others::of(&table, all));
+    let others = with_others.then(|| Others::new(&table, all));
     let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
     let mut mended = samples.mend(&table, time_at, repair)?;
     let starts = match parted {
@@ -250,7 +251,7 @@ fn read_parts(
         let places = samples.places.iter().collect();
         of_rows.push((NoteKind::Interpolated, places));
     }
-    if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
+    if let (Some(at), Some(time)) = (time_at, samples.series.get(super::columns::TIME)) {
         table.check_time_unit(at, time);
     }
     let remarks = table.remarks().cloned().map(Note::File);

@@ -1,6 +1,7 @@
 //! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
 use crate::data::positions::{Positions, RUN};
+use crate::data::recording::columns::TIME;
 use crate::data::recording::history::{History, starts};
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
@@ -9,8 +10,6 @@ use crate::error::{Error, Place, Result};
 use crate::recording::gaps;
 use crate::remedy::{Remedy, Setting};
 
-/// Index of the time among the series.
-pub(super) const TIME: usize = 2;
 /// Input, output, time and load.
 const SERIES: usize = 4;
 /// Rows for which memory is taken first. Tables of many recordings have short ones.
@@ -161,7 +160,7 @@ impl Samples {
                 copies,
                 alone,
                 repeated,
-            } = History::of(&self.series);
+            } = History::new(&self.series);
             let places = |rows: &[usize]| rows.iter().map(|&n| self.places.at(n)).collect();
             note(NoteKind::Copied, &places(&copies));
             note(NoteKind::Alone, &places(&alone));
@@ -275,23 +274,4 @@ fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
         problem,
     };
     fault.remedied(Remedy::new(words, [Setting::on("repair")]))
-}
-
-/// Linear interpolation of a series at the times `wanted`; NaN outside its own times. Only finite
-/// samples count. They are sorted by time, and of several samples at one time the last counts.
-pub(super) fn interpolate(times: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
-    let samples = times.iter().zip(values).map(|(t, y)| (*t, *y));
-    let mut samples: Vec<_> = samples
-        .filter(|(t, y)| t.is_finite() && y.is_finite())
-        .collect();
-    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let at = |&t: &f64| {
-        let after = samples.partition_point(|sample| sample.0 <= t);
-        match (after.checked_sub(1).map(|n| samples[n]), samples.get(after)) {
-            (Some((t0, y0)), _) if t0 == t => y0,
-            (Some((t0, y0)), Some((t1, y1))) => y0 + (y1 - y0) * ((t - t0) / (t1 - t0)),
-            _ => f64::NAN,
-        }
-    };
-    wanted.iter().map(at).collect()
 }

@@ -91,7 +91,7 @@ pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Ro
     let each = each.map(|&(name, unit, series)| Candidate {
         name,
         series,
-        may_be: Name::of(name, unit).may_be(series),
+        may_be: Name::new(name, unit).may_be(series),
     });
     let all: Vec<Candidate<'_>> = each.collect();
     let [input, output, time, load] = known;

@@ -15,7 +15,7 @@ pub(super) struct Name {
 
 impl Name {
     /// Takes a column's name, and the unit below it.
-    pub(super) fn of(column: &str, below: Option<&str>) -> Self {
+    pub(super) fn new(column: &str, below: Option<&str>) -> Self {
         let quantity = recording::Quantity::from_column(column);
         let split = |c: char| !c.is_alphanumeric() && !matches!(c, '%' | '°' | 'µ');
         let mut parts: Vec<&str> = quantity.name.split(split).collect();

@@ -164,14 +164,14 @@ impl Work for Inverting<'_> {
                 accepted.map_err(|error| self.samples.fault(block, row, &error))?;
             }
             let Some(headings) = &mut self.headings else {
-                let wanted = Wanted::of(sample, None, self.tolerance);
+                let wanted = Wanted::new(sample, None, self.tolerance);
                 self.solving.row(wanted, cells)?;
                 continue;
             };
             self.unheaded.push_back(sample);
             for (heading, count) in headings.push(sample.input) {
                 for sample in self.unheaded.drain(..count) {
-                    let wanted = Wanted::of(sample, heading, self.tolerance);
+                    let wanted = Wanted::new(sample, heading, self.tolerance);
                     self.solving.row(wanted, cells)?;
                 }
             }
@@ -183,7 +183,7 @@ impl Work for Inverting<'_> {
         if let Some(headings) = self.headings.take() {
             let (heading, count) = headings.finish();
             for sample in self.unheaded.drain(..count) {
-                let wanted = Wanted::of(sample, heading, self.tolerance);
+                let wanted = Wanted::new(sample, heading, self.tolerance);
                 self.solving.row(wanted, cells)?;
             }
         }

@@ -31,9 +31,9 @@ pub(super) trait Work: Send {
 }
 
 /// A block of rows on its way, and new cells: of these rows or of rows before them.
-pub(super) struct Parcel {
-    pub(super) block: Block,
-    pub(super) cells: AddedCells,
+struct Parcel {
+    block: Block,
+    cells: AddedCells,
 }
 
 /// Blocks that may wait before a thread.
@@ -111,7 +111,7 @@ fn in_turn(
     let mut parcel = rows.parcel();
     while rows.read(table, &mut parcel)? {
         let worked = work.rows(&parcel.block, &mut parcel.cells);
-        sink.take(&mut parcel)?;
+        sink.take(&mut parcel.block, &parcel.cells)?;
         worked?;
         progress(table.bytes_read());
     }
@@ -188,7 +188,7 @@ fn compute(
 
 fn write(mut sink: Sink, worked: &Receiver<Parcel>, to_reader: &Sender<Parcel>) -> Result<Sink> {
     for mut parcel in worked {
-        sink.take(&mut parcel)?;
+        sink.take(&mut parcel.block, &parcel.cells)?;
         // After an error the reader takes no more.
         let _ = to_reader.send(parcel);
     }

@@ -1,6 +1,5 @@
 //! Pairs the rows of a table with the cells that come for them in the same order.
 
-use super::pipeline::Parcel;
 use crate::data::output::{Added, AddedCells, Needs, TableWriter};
 use crate::data::table::{Block, TableReader};
 use crate::error::Result;
@@ -40,14 +39,14 @@ impl Sink {
     }
 
     /// Writes the rows whose cells are known now, and hands them on to whoever reads the result.
-    /// Leaves a used block in the parcel, if there is one.
+    /// Leaves a used block in place of `block`, if there is one.
     ///
     /// # Errors
     /// [`crate::Error::File`].
-    pub(super) fn take(&mut self, parcel: &mut Parcel) -> Result<()> {
-        self.waiting.push_back(std::mem::take(&mut parcel.block));
-        if let Some(used) = self.write(&parcel.cells)? {
-            parcel.block = used;
+    pub(super) fn take(&mut self, block: &mut Block, cells: &AddedCells) -> Result<()> {
+        self.waiting.push_back(std::mem::take(block));
+        if let Some(used) = self.write(cells)? {
+            *block = used;
         }
         self.out.as_mut().map_or(Ok(()), TableWriter::hand_on)
     }

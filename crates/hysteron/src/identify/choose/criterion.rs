@@ -39,11 +39,11 @@ impl<'a> Level<'a> {
         folds: &Folds,
         progress: Progress<'a>,
     ) -> Result<Self> {
-        let told = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
-        let told = Progress::new(&told);
+        let report = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
+        let unnamed = Progress::new(&report);
         let own = {
             let target = centred(&problem, sign);
-            Sums::of_groups(&problem, target, |n| folds.of(n), folds.count, told)?
+            Sums::of_groups(&problem, target, |n| folds.fold(n), folds.count, unnamed)?
         };
         let mut all = own[0].clone();
         own[1..].iter().for_each(|fold| all.add(fold));

@@ -76,10 +76,10 @@ pub fn left_out(
         let kept: Vec<f64> = fold.iter().map(|g| f64::from(*g != f)).collect();
         let mut options = options.clone();
         if let Some(candidates) = candidates {
-            let told = |_: &'static str, _: f64| {
+            let report = |_: &'static str, _: f64| {
                 progress.tell("left-out branches", f as f64 / count as f64)
             };
-            let progress = Progress::new(&told);
+            let progress = Progress::new(&report);
             options = choose(
                 recordings.into(),
                 &options,

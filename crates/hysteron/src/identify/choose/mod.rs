@@ -9,38 +9,17 @@ mod criterion;
 pub(super) mod left_out;
 mod rivals;
 mod search;
+mod seen;
 pub(super) mod start;
 pub(super) mod validate;
+
+pub(super) use seen::Seen;
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
 use crate::model::Validation;
 use crate::progress::Progress;
-use crate::recording::Recording;
 use validate::{Candidates, validated};
-
-/// The same samples at three places of a model.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Seen<'a> {
-    /// As the operators see them.
-    pub(super) operators: &'a [Recording],
-    /// The same before the place of the levels bends the axis. Their branches are left out, so that
-    /// every spacing is tested on the same samples.
-    pub(super) even: &'a [Recording],
-    /// As measured. Simple rivals see these.
-    pub(super) measured: &'a [Recording],
-}
-
-impl<'a> From<&'a [Recording]> for Seen<'a> {
-    /// Recordings that the operators see as they were measured.
-    fn from(recordings: &'a [Recording]) -> Self {
-        Self {
-            operators: recordings,
-            even: recordings,
-            measured: recordings,
-        }
-    }
-}
 
 /// What is left to the data.
 #[derive(Debug, Clone, Copy)]

@@ -38,7 +38,7 @@ pub(super) fn left_out(recordings: &[Recording], folds: &Folds) -> Result<Vec<Ri
                 continue;
             };
             for (recording, first) in with_first(recordings) {
-                let is_left_out = |n: usize| folds.of(first + n) == Some(fold);
+                let is_left_out = |n: usize| folds.fold(first + n) == Some(fold);
                 rival.each(&recording.input, is_left_out, |n, predicted| {
                     squares += (recording.output[n] - predicted).powi(2);
                     samples += 1;
@@ -68,7 +68,7 @@ fn with_first(recordings: &[Recording]) -> impl Iterator<Item = (&Recording, usi
 fn pieces<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Measured<'a>> {
     let mut pieces = Vec::new();
     for (recording, first) in with_first(recordings) {
-        let is_kept = |n: usize| folds.of(first + n).is_some_and(|of| of != fold);
+        let is_kept = |n: usize| folds.fold(first + n).is_some_and(|of| of != fold);
         let runs: Runs<bool> = (0..recording.len()).map(is_kept).collect();
         // A single sample has no direction.
         let long = |(samples, kept): &(Range<usize>, bool)| *kept && samples.len() > 1;

@@ -10,7 +10,7 @@ const ALONG: std::ops::RangeInclusive<i32> = -10..=-3;
 const ACROSS: std::ops::RangeInclusive<i32> = -10..=-5;
 
 /// A place on the grid: 0 is no smoothness, `n` the `n`-th decade.
-pub(super) type Place = (usize, usize);
+pub(super) type Point = (usize, usize);
 
 /// A way from a place to a neighbour.
 pub(super) type Step = (isize, isize);
@@ -33,7 +33,7 @@ pub(super) const AROUND: [Step; 8] = [
 /// Every third place in each direction, where the first walk looks.
 const FIRST: [usize; 3] = [0, 3, 6];
 
-pub(super) fn smooth_at(place: Place) -> Smooth {
+pub(super) fn smooth_at(place: Point) -> Smooth {
     let at = |place: usize, decades: std::ops::RangeInclusive<i32>| match place {
         0 => 0.0,
         n => 10_f64.powi(decades.start() + n as i32 - 1),
@@ -48,14 +48,14 @@ pub(super) fn smooth_at(place: Place) -> Smooth {
 /// grid, if that is empty). `steps` lead to the neighbours. Returns the values of all places it
 /// looked at.
 pub(super) fn walk(
-    from: &[Place],
+    from: &[Point],
     steps: &[Step],
-    mut value: impl FnMut(Place) -> Result<f64>,
-) -> Result<BTreeMap<Place, f64>> {
+    mut value: impl FnMut(Point) -> Result<f64>,
+) -> Result<BTreeMap<Point, f64>> {
     let most = |decades: std::ops::RangeInclusive<i32>| decades.count();
     let (along, across) = (most(ALONG), most(ACROSS));
-    let mut known: BTreeMap<Place, f64> = BTreeMap::new();
-    let coarse: Vec<Place> = FIRST
+    let mut known: BTreeMap<Point, f64> = BTreeMap::new();
+    let coarse: Vec<Point> = FIRST
         .iter()
         .flat_map(|a| FIRST.map(|c| (*a, c.min(across))))
         .collect();
@@ -71,7 +71,7 @@ pub(super) fn walk(
             let c = best.1.checked_add_signed(c)?;
             (a <= along && c <= across).then_some((a, c))
         };
-        let new: Vec<Place> = steps
+        let new: Vec<Point> = steps
             .iter()
             .filter_map(near)
             .filter(|place| !known.contains_key(place))
@@ -85,7 +85,7 @@ pub(super) fn walk(
     }
 }
 
-pub(super) fn best(known: &BTreeMap<Place, f64>) -> Option<Place> {
+pub(super) fn best(known: &BTreeMap<Point, f64>) -> Option<Point> {
     let least = known.iter().min_by(|a, b| a.1.total_cmp(b.1));
     least.map(|(place, _)| *place)
 }
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn the_walk_finds_the_bottom_of_a_bowl_anywhere() -> Result<()> {
         for bottom in [(0, 0), (8, 6), (3, 4), (7, 0), (0, 6)] {
-            let bowl = |(a, c): Place| {
+            let bowl = |(a, c): Point| {
                 Ok((a as f64 - bottom.0 as f64).powi(2) + (c as f64 - bottom.1 as f64).powi(2))
             };
             for from in [vec![], vec![(0, 0)], vec![(8, 6), (1, 1)]] {

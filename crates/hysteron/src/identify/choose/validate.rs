@@ -5,10 +5,10 @@
 //! about each other. Then the evidence of the prior decides, which needs nothing left out.
 
 use crate::error::Result;
-use crate::identify::choose::Seen;
 use crate::identify::choose::criterion::Level;
 use crate::identify::choose::rivals;
-use crate::identify::choose::search::{ALONG_AXES, AROUND, Place, Step, best, smooth_at, walk};
+use crate::identify::choose::search::{ALONG_AXES, AROUND, Point, Step, best, smooth_at, walk};
+use crate::identify::choose::seen::Seen;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
@@ -227,7 +227,7 @@ struct Search {
     /// The smoothness, where it is given.
     smooth: Option<Smooth>,
     /// Where the last walk ended.
-    from: Vec<Place>,
+    from: Vec<Point>,
     near: &'static [Step],
 }
 

@@ -114,13 +114,13 @@ pub(crate) fn left_out_errors(
     let (regressor, experiment) = (&problem.regressor, &problem.experiment);
     let folds = Folds::new(Units::new(experiment, None, enough_branches), GROUPS);
     let target = centred(problem, fitted.sign);
-    let told = |_: &'static str, _: f64| progress.tell("confidence", 0.0);
-    let progress = Progress::new(&told);
+    let report = |_: &'static str, _: f64| progress.tell("confidence", 0.0);
+    let progress = Progress::new(&report);
     // All samples are one group. Its sums less those of a group are the sums of the others.
     let all = Sums::of_groups(problem, &target, |_| Some(0), 1, progress)?;
     let mut solved: Vec<Coefficients> = Vec::new();
     for groups in Sums::passes(problem, folds.count) {
-        let own = Sums::of_some(problem, &target, |n| folds.of(n), groups, progress)?;
+        let own = Sums::of_some(problem, &target, |n| folds.fold(n), groups, progress)?;
         solved.extend(parallel::map(own.len(), |n| {
             progress.tell("confidence", 0.0)?;
             let rest = all[0].without(&own[n]).reduced()?;
@@ -130,9 +130,9 @@ pub(crate) fn left_out_errors(
         })?);
     }
     let (x, free): (Vec<_>, Vec<_>) = solved.into_iter().map(|at| (at.x, at.free)).unzip();
-    let mut errors = regressor.forwards(experiment, &x, |n| folds.of(n))?;
+    let mut errors = regressor.forwards(experiment, &x, |n| folds.fold(n))?;
     for (n, error) in errors.iter_mut().enumerate() {
-        let Some(fold) = folds.of(n) else {
+        let Some(fold) = folds.fold(n) else {
             continue;
         };
         let level = experiment.offsets.iter().zip(&free[fold]);
@@ -159,11 +159,11 @@ impl LeftOutErrors {
     ) -> (impl Iterator<Item = (usize, f64)>, usize) {
         let units = &self.units;
         let begins = problem.experiment.recordings.iter().map(|own| own.start);
-        let first: Vec<Option<usize>> = begins.map(|n| units.of(n)).collect();
+        let first: Vec<Option<usize>> = begins.map(|n| units.unit(n)).collect();
         let all = !units.whole_branches || first.len() == units.count;
         let count = units.count - if all { 0 } else { first.len() };
         let errors = self.errors.iter().copied().enumerate();
-        let counts = move |n: usize| all || !first.contains(&units.of(n));
+        let counts = move |n: usize| all || !first.contains(&units.unit(n));
         (errors.filter(move |(n, _)| counts(*n)), count)
     }
 }

@@ -21,7 +21,7 @@ use faer::{Mat, Side};
 const ENOUGH_FOR_BAND: usize = 3;
 
 /// The confidence of a fit; `None` without bootstrap replicates.
-pub(crate) fn of(
+pub(crate) fn estimate(
     problem: &Problem,
     fitted: &Fitted,
     progress: Progress<'_>,
@@ -44,7 +44,7 @@ pub(crate) fn of(
     // The matrix without the prior: what the data alone determine.
     let plain = with(Prior::NONE, dense)?;
     let elements = plain.penalised.elements().unwrap_or_default();
-    let spectrum = Spectrum::of(elements, plain.penalised.ridge)?;
+    let spectrum = Spectrum::new(elements, plain.penalised.ridge)?;
     let free_count = fitted.solution.free.len() as f64;
     let solution = &fitted.solution;
     let samples = solution.residual.len() as f64;
@@ -103,7 +103,7 @@ pub(crate) fn of(
         sensor,
         sessions: 1,
         replicates: options.bootstrap,
-        excitation: Unresolved::of(&inputs, *problem.regressor.plane(), options.operator, start)?
+        excitation: Unresolved::new(&inputs, *problem.regressor.plane(), options.operator, start)?
             .classes(&inputs)?,
         standard_error: standard.weights,
         offset_error: standard.offset,

@@ -53,7 +53,7 @@ pub(crate) const UNRESOLVED: f64 = 5e-3;
 /// [`Error::Core`] for an input that is not finite; [`Error::Fit`] if the Gram matrix of the
 /// plane's operators would be too large.
 pub fn excitation(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<Excitation>> {
-    Unresolved::of(inputs, plane, operator, Initial::Off)?.classes(inputs)
+    Unresolved::new(inputs, plane, operator, Initial::Off)?.classes(inputs)
 }
 
 /// What recorded inputs leave unresolved: `I − R = ε (G + εI)⁻¹`, the share of a unit prior
@@ -66,7 +66,7 @@ pub(crate) struct Unresolved {
 }
 
 impl Unresolved {
-    pub(crate) fn of(
+    pub(crate) fn new(
         inputs: &[&[f64]],
         plane: Plane,
         operator: Operator,

@@ -22,7 +22,7 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
     for repeat in repeats {
         let (start, _) = find_start(model, repeat)?;
         let begin = model.restore(&start.turning_points, start.input)?;
-        let around = Surroundings::of(model, repeat);
+        let around = Surroundings::from_recording(model, repeat);
         let (output, _) = model.run_over(&mut begin.clone(), repeat)?;
         let half = band.run(&begin, &model.seen(&repeat.input, around)?)?;
         let errors = repeat.output.iter().zip(&output).map(|(y, h)| y - h);
@@ -38,7 +38,8 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
         found.sessions += repeats.len();
     }
     if let Some(fit) = &mut model.fit {
-        fit.repeats.extend(repeats.iter().filter_map(SeenFile::of));
+        fit.repeats
+            .extend(repeats.iter().filter_map(SeenFile::from_recording));
     }
     Ok(())
 }

@@ -25,7 +25,7 @@ pub(crate) struct Spectrum {
 
 impl Spectrum {
     /// Of a symmetric matrix in which `ridge` was added to the diagonal.
-    pub(crate) fn of(matrix: &[f64], ridge: f64) -> Result<Self> {
+    pub(crate) fn new(matrix: &[f64], ridge: f64) -> Result<Self> {
         let count = matrix.len().isqrt();
         let values = Mat::from_fn(count, count, |i, j| matrix[i * count + j])
             .self_adjoint_eigenvalues(Side::Lower)
@@ -83,7 +83,7 @@ pub(crate) fn determined(
     let form = SparseForm::new(plane, Operator::Mkp)?;
     let inputs: Vec<&[f64]> = recordings.iter().map(|r| r.input.as_slice()).collect();
     let gram = centred_gram(&inputs, &form, Initial::Off)?;
-    let spectrum = Spectrum::of(&gram, 0.0)?;
+    let spectrum = Spectrum::new(&gram, 0.0)?;
     let (low, high) = range(output);
     let even = (high - low) / operators as f64;
     let against_noise = spectrum.above_noise(noise(output), even);

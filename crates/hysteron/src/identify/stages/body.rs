@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
+use crate::identify::stages::changed::thin;
 use crate::identify::stages::nelder_mead::minimise;
-use crate::identify::stages::thin;
 use crate::model::{FirstOrder, needs_time};
 use crate::progress::Progress;
 use crate::recording::Recording;

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::choose::{Open, Seen};
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::{on_grid, with_inputs};
+use crate::identify::stages::changed::{on_grid, with_inputs};
 use crate::identify::weights::experiment::plane_of_all;
 use crate::model::{Plane, Validation};
 use crate::progress::Progress;

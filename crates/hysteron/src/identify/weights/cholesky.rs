@@ -23,7 +23,7 @@ impl Cholesky {
     }
 
     /// The factor of a whole matrix; `None` if the matrix is not positive definite up to rounding.
-    pub(crate) fn of(size: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
+    pub(crate) fn new(size: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let factor = Mat::from_fn(size, size, &element).llt(Side::Lower).ok()?;
         let l = factor.L();
         let definite = |i: usize| l[(i, i)].powi(2) > ROUNDING * element(i, i);
@@ -133,7 +133,7 @@ mod tests {
                     chosen.push(n);
                 }
             }
-            let whole = Cholesky::of(chosen.len(), |i, j| a(chosen[i], chosen[j]));
+            let whole = Cholesky::new(chosen.len(), |i, j| a(chosen[i], chosen[j]));
             let whole = whole.map(|whole| whole.rows).unwrap_or_default();
             assert_eq!(whole.len(), factor.rows.len());
             for (a, b) in whole.iter().zip(&factor.rows) {

@@ -23,7 +23,27 @@ pub(crate) struct CornerGram {
 
 impl CornerGram {
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
-        self.pattern.get_or_init(|| Pattern::of(self)).as_ref()
+        let pattern = || Pattern::new(&self.layout, &self.starts, &self.places);
+        self.pattern.get_or_init(pattern).as_ref()
+    }
+
+    /// The elements at the places of a pattern.
+    pub(crate) fn elements(&self, pattern: &Pattern) -> Vec<f64> {
+        let mut values = vec![0.0; pattern.rows.len()];
+        for column in 0..self.layout.count {
+            let mut at = pattern.starts[column];
+            for k in self.starts[column]..self.starts[column + 1] {
+                let row = self.places[k] as usize;
+                if row < column {
+                    continue;
+                }
+                while pattern.rows[at] < row {
+                    at += 1;
+                }
+                values[at] = self.values[k];
+            }
+        }
+        values
     }
 
     /// `Sᵀ G S x`.

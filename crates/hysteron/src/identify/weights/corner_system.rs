@@ -113,7 +113,7 @@ impl CornerSystem {
     fn elements(&self, with_gram: bool) -> Option<Vec<f64>> {
         let pattern = self.gram.pattern()?;
         let mut elements = match with_gram {
-            true => pattern.of_gram(&self.gram),
+            true => self.gram.elements(pattern),
             false => vec![0.0; pattern.penalties[0].len()],
         };
         for (penalty, strength) in pattern.penalties.iter().zip(self.smoothness.strengths) {
@@ -398,7 +398,7 @@ mod tests {
             start: [Start::Off, Start::On, Start::Unknown][rng.random_range(0..3)],
             sign: Some(Sign::Positive),
             load_degree: Some(1),
-            ..FitOptions::default()
+            ..FitOptions::plain()
         }
     }
 

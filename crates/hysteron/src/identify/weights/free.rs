@@ -87,7 +87,7 @@ impl FreeColumns {
         let of = |z: &OfLoad| {
             let mut sums = vec![0.0; units.count];
             for (n, (z, r)) in z.iter().zip(residual).enumerate() {
-                if let Some(unit) = units.of(n) {
+                if let Some(unit) = units.unit(n) {
                     sums[unit] += z * r;
                 }
             }

@@ -7,7 +7,7 @@
 //! error, so the factor serves as the preconditioner of conjugate gradients on the other weights,
 //! which end after a few steps (Golub and Van Loan 2013, 11.5).
 
-use crate::identify::weights::corner_gram::CornerGram;
+use crate::identify::weights::layout::Layout;
 use crate::identify::weights::smoothness;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
@@ -23,8 +23,8 @@ use std::collections::BTreeSet;
 #[derive(Debug)]
 pub(crate) struct Pattern {
     /// The lower triangle, column by column.
-    starts: Vec<usize>,
-    rows: Vec<usize>,
+    pub(super) starts: Vec<usize>,
+    pub(super) rows: Vec<usize>,
     symbolic: SymbolicCholesky<usize>,
     /// For each weight, the elements of its square, as places and signs.
     squares: Vec<Vec<(u32, f64)>>,
@@ -33,14 +33,14 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// `None` if the matrix is too large for an order to be found.
-    pub(super) fn of(gram: &CornerGram) -> Option<Self> {
-        let layout = &gram.layout;
+    /// The pattern for Gram matrices whose rows have elements at `places`; row `n` from `starts[n]`
+    /// on. `None` if the matrix is too large for an order to be found.
+    pub(super) fn new(layout: &Layout, starts: &[usize], places: &[u32]) -> Option<Self> {
         let count = layout.count;
         let mut columns: Vec<Vec<u32>> = vec![Vec::new(); count];
         for (n, column) in columns.iter_mut().enumerate() {
-            let places = &gram.places[gram.starts[n]..gram.starts[n + 1]];
-            column.extend(places.iter().filter(|place| **place as usize >= n));
+            let places = places[starts[n]..starts[n + 1]].iter();
+            column.extend(places.filter(|place| **place as usize >= n));
         }
         let edges = smoothness::edges(layout.levels());
         let parts: BTreeSet<usize> = layout.blocks.iter().map(|block| block.part).collect();
@@ -120,25 +120,6 @@ impl Pattern {
     /// Number of elements of a factor.
     pub(crate) fn fill(&self) -> usize {
         self.symbolic.len_val()
-    }
-
-    /// The elements of the Gram matrix.
-    pub(crate) fn of_gram(&self, gram: &CornerGram) -> Vec<f64> {
-        let mut values = vec![0.0; self.rows.len()];
-        for column in 0..gram.layout.count {
-            let mut at = self.starts[column];
-            for k in gram.starts[column]..gram.starts[column + 1] {
-                let row = gram.places[k] as usize;
-                if row < column {
-                    continue;
-                }
-                while self.rows[at] < row {
-                    at += 1;
-                }
-                values[at] = gram.values[k];
-            }
-        }
-        values
     }
 
     /// Adds the squares of weights, times a factor each.

@@ -65,11 +65,11 @@ pub(crate) fn minimise(
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
     // Rounding of sums of `count` products. A gradient below this is zero.
-    let slack = 1e-13 * size;
+    let rounding = 1e-13 * size;
     let mut set = FreeSet::default();
     let above: Vec<usize> = (0..count).filter(|&n| x[n] > 0.0).collect();
     let rows: Vec<Cow<'_, [f64]>> = above.iter().map(|n| a.row(*n)).collect();
-    match Cholesky::of(above.len(), |i, j| rows[i][above[j]]) {
+    match Cholesky::new(above.len(), |i, j| rows[i][above[j]]) {
         Some(factor) => {
             set.factor = factor;
             set.members = above;
@@ -92,7 +92,7 @@ pub(crate) fn minimise(
         progress.tell("weights", set.members.len() as f64 / count as f64)?;
         let mut gradient = b.to_vec();
         a.take_from(&mut gradient, x, &set.members);
-        let outside = |n: &usize| x[*n] == 0.0 && !tried[*n] && gradient[*n] > slack;
+        let outside = |n: &usize| x[*n] == 0.0 && !tried[*n] && gradient[*n] > rounding;
         // The steepest first, in units of each variable's own curvature.
         let steepness = |n: usize| (gradient[n] / a.diagonal(n).sqrt(), n);
         let mut wanted: Vec<(f64, usize)> = (0..count).filter(outside).map(steepness).collect();

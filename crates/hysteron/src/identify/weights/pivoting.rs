@@ -68,8 +68,8 @@ pub(crate) fn minimum_by(
             break;
         };
         let gradient = gradient(&members, &values);
-        let slack = 1e-12 * b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
-        let wrong_below = (0..count).filter(|&n| !above[n] && gradient[n] > slack);
+        let rounding = 1e-12 * b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
+        let wrong_below = (0..count).filter(|&n| !above[n] && gradient[n] > rounding);
         let mut wrong: Vec<usize> = wrong_below.collect();
         let below = members.iter().zip(&values).filter(|(_, x)| **x < 0.0);
         wrong.extend(below.map(|(n, _)| *n));

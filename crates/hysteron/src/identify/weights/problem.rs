@@ -137,11 +137,11 @@ impl<'a> Problem<'a> {
             };
             // Rounding of a gradient: the solver takes smaller values for zero.
             let residual = &fitted.solution.residual;
-            let slack = 1e-9 * residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+            let rounding = 1e-9 * residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             if self.options.solver == Solver::Ols
                 || !self
                     .regressor
-                    .take_missing(&self.experiment, residual, &slopes, slack)?
+                    .take_missing(&self.experiment, residual, &slopes, rounding)?
             {
                 return Ok(fitted);
             }

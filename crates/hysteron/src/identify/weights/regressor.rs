@@ -168,7 +168,7 @@ impl Regressor {
             for (result, products) in results.iter_mut().zip(all) {
                 for (result, column) in result.iter_mut().zip(&self.columns) {
                     let from = column.initial_in(recordings.start);
-                    *result += products.of(column.part, from, column.operator);
+                    *result += products.product(column.part, from, column.operator);
                 }
             }
         }
@@ -450,7 +450,7 @@ impl Regressor {
                 let (mut on, mut descent) = (0, -slopes[first]);
                 for (s, products) in all.iter().enumerate() {
                     let [off, started_on] =
-                        [Initial::Off, Initial::On].map(|f| products.of(part, f, operator));
+                        [Initial::Off, Initial::On].map(|f| products.product(part, f, operator));
                     let open = self.open[operator] >> s & 1 == 1;
                     on |= u64::from(open && started_on > off) << s;
                     descent += if open { off.max(started_on) } else { off };
@@ -472,7 +472,7 @@ struct Products {
 }
 
 impl Products {
-    fn of(&self, part: usize, from: Initial, operator: usize) -> f64 {
+    fn product(&self, part: usize, from: Initial, operator: usize) -> f64 {
         let place = self.starts.iter().position(|start| *start == from);
         place.map_or(f64::NEG_INFINITY, |place| {
             self.sums[part * self.starts.len() + place][operator]

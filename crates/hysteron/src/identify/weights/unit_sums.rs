@@ -46,7 +46,7 @@ impl UnitSums {
                         let (mut held, mut at) = (0.0, None);
                         for n in range.clone() {
                             let left_branch = rows.leaves_branch(experiment.input[n])?;
-                            let unit = units.of(n);
+                            let unit = units.unit(n);
                             if left_branch || unit != at {
                                 scratch.add(rows.memory(), held);
                                 held = 0.0;

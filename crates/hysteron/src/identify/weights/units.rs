@@ -39,7 +39,7 @@ impl Units {
     /// Each unit in so many parts. They divide the path of the input, not the number of samples,
     /// because the input may rest.
     fn divided(mut self, input: &[f64], parts: usize) -> Self {
-        let step = |n: usize| match n > 0 && self.of(n - 1) == self.of(n) {
+        let step = |n: usize| match n > 0 && self.unit(n - 1) == self.unit(n) {
             true => (input[n] - input[n - 1]).abs(),
             false => 0.0,
         };
@@ -63,7 +63,7 @@ impl Units {
     }
 
     /// The unit of a sample; `None` if the sample does not count.
-    pub(crate) fn of(&self, sample: usize) -> Option<usize> {
+    pub(crate) fn unit(&self, sample: usize) -> Option<usize> {
         self.of.at(sample)
     }
 }
@@ -82,7 +82,7 @@ impl Folds {
     }
 
     /// The fold that leaves a sample out; `None` if the sample does not count.
-    pub(crate) fn of(&self, sample: usize) -> Option<usize> {
-        self.units.of(sample).map(|unit| unit % self.count)
+    pub(crate) fn fold(&self, sample: usize) -> Option<usize> {
+        self.units.unit(sample).map(|unit| unit % self.count)
     }
 }

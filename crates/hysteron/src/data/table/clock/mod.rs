@@ -111,8 +111,8 @@ impl Order {
     /// Whether the day comes first; `None` if nothing tells.
     pub(super) fn day_first(&self) -> Option<bool> {
         let [day, month] = self.faults;
-        let told = day.into_iter().zip(month).find(|(day, month)| day != month);
-        match told {
+        let differs = day.into_iter().zip(month).find(|(day, month)| day != month);
+        match differs {
             Some((day, _)) => Some(!day),
             None => self.halves.then_some(false),
         }

@@ -33,7 +33,7 @@ impl Samples {
     pub(super) fn new(recordings: &[Recording]) -> Result<Self> {
         let options = FitOptions {
             load_degree: Some(0),
-            ..FitOptions::default()
+            ..FitOptions::plain()
         };
         let Experiment { input, output, .. } = Experiment::new(recordings, &options)?;
         let loads = recordings.iter().flat_map(|recording| &recording.load);

@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
+use crate::identify::stages::load::Tried;
+use crate::identify::stages::load::curves::{behind, moving_only};
 use crate::identify::stages::load::search::Search;
-use crate::identify::stages::load::{Tried, behind, moving_only};
 use crate::identify::weights::problem::Problem;
 use crate::model::LoadCurves;
 use crate::progress::Progress;

@@ -5,15 +5,18 @@
 //! scaled to its own height. The order of the weights in the load, and a scale of the axis, are
 //! taken where loads that were left out are predicted better with them.
 
+mod curves;
 mod groups;
 mod left_out;
 mod search;
 
+pub(super) use curves::behind;
+
 use crate::error::Result;
 use crate::identify::options::FitOptions;
+use crate::identify::stages::load::curves::{moving_only, refined};
 use crate::identify::stages::load::groups::{Groups, Samples};
 use crate::identify::stages::load::search::Search;
-use crate::identify::stages::with_inputs;
 use crate::model::{LoadCurves, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -30,9 +33,6 @@ const LEVELS: usize = 14;
 
 /// A more complex law has to predict loads left out better by this factor.
 const WORTH: f64 = 0.9;
-
-/// Knots for each pair of neighbouring loads, where gain and offset between them are not straight.
-const FINE: usize = 6;
 
 /// The law of the load, and what chose it.
 pub(super) struct Law {
@@ -150,42 +150,5 @@ pub(super) fn find(
         uses_curves,
         degree,
         report,
-    })
-}
-
-/// The curves with more knots, where gain and offset between the loads are not straight.
-fn refined(curves: &LoadCurves, power: f64) -> LoadCurves {
-    if power == 1.0 {
-        return curves.clone();
-    }
-    let mut loads = Vec::new();
-    for pair in curves.loads.windows(2) {
-        let knot = |n: usize| pair[0] + (pair[1] - pair[0]) * n as f64 / FINE as f64;
-        loads.extend((0..FINE).map(knot));
-    }
-    loads.extend(curves.loads.last());
-    curves.resampled(&loads, power)
-}
-
-/// The curves without gain and offset.
-fn moving_only(curves: &LoadCurves) -> LoadCurves {
-    LoadCurves {
-        gains: Vec::new(),
-        offsets: Vec::new(),
-        ..curves.clone()
-    }
-}
-
-/// The recordings with the load's shift taken off their inputs.
-pub(super) fn behind(curves: &LoadCurves, recordings: &[Recording]) -> Vec<Recording> {
-    with_inputs(recordings, |recording| {
-        let load = recording.load.iter().flatten();
-        let pairs = recording.input.iter().zip(load);
-        pairs
-            .map(|(t, load)| match curves.at(*load) {
-                Ok(at) => at.scale * t - at.shift,
-                Err(_) => f64::NAN,
-            })
-            .collect()
     })
 }

@@ -3,9 +3,9 @@
 use crate::error::Result;
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::load::behind;
+use crate::identify::stages::changed::thin;
+use crate::identify::stages::load::curves::behind;
 use crate::identify::stages::load::groups::{Groups, Samples};
-use crate::identify::stages::thin;
 use crate::identify::weights::problem::Problem;
 use crate::model::LoadCurves;
 use crate::progress::Progress;
@@ -151,16 +151,16 @@ impl Search<'_> {
     /// Makes the shift monotone, gives the loads that do not tell theirs the one that follows from
     /// their neighbours, and counts from the lowest load.
     pub(super) fn fill_in(&self, shift: &mut LoadCurves) {
-        let told: Vec<usize> = (0..shift.loads.len())
+        let telling: Vec<usize> = (0..shift.loads.len())
             .filter(|n| self.groups.telling[*n])
             .collect();
-        let (Some(&first), Some(&last)) = (told.first(), told.last()) else {
+        let (Some(&first), Some(&last)) = (telling.first(), telling.last()) else {
             return;
         };
         let falls = shift.shifts[last] < shift.shifts[first];
-        let mut values: Vec<f64> = told.iter().map(|n| shift.shifts[*n]).collect();
+        let mut values: Vec<f64> = telling.iter().map(|n| shift.shifts[*n]).collect();
         make_monotone(&mut values, falls);
-        let loads: Vec<f64> = told.iter().map(|n| shift.loads[*n]).collect();
+        let loads: Vec<f64> = telling.iter().map(|n| shift.loads[*n]).collect();
         let line = LoadCurves {
             loads,
             shifts: values,

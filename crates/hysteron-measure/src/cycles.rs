@@ -3,8 +3,9 @@
 use crate::result::Result;
 use hysteron::{Direction, PrepareOptions, Progress, Recording, Step, Turning, prepare};
 
-/// Cycles from one highest input to the next. Lost signs and spikes are repaired before.
-pub fn cycles(raw: &Recording) -> Result<Vec<Recording>> {
+/// The recording after lost signs and spikes are repaired, and its cycles from one highest input to
+/// the next.
+pub(crate) fn cycles(raw: &Recording) -> Result<(Recording, Vec<Recording>)> {
     let steps = PrepareOptions {
         signs: true,
         spikes: Step::Value(4.0),
@@ -24,5 +25,6 @@ pub fn cycles(raw: &Recording) -> Result<Vec<Recording>> {
         }
     }
     let part = |b: &[usize]| whole.only(|n| (b[0]..b[1]).contains(&n));
-    Ok(bounds.windows(2).filter_map(part).collect())
+    let cycles = bounds.windows(2).filter_map(part).collect();
+    Ok((whole, cycles))
 }
