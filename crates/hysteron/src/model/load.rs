@@ -331,7 +331,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::at_load`].
-    pub(crate) fn shifted(&self, told: Option<f64>, shift: f64) -> Result<Self> {
+    pub fn shifted(&self, told: Option<f64>, shift: f64) -> Result<Self> {
         let (Some(dependence), Some(told)) = (&self.load, told) else {
             return self.moved(shift);
         };
