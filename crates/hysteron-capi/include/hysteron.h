@@ -667,8 +667,8 @@ int32_t hysteron_adaptive_load_new(uint64_t model,
                                    uint64_t *adaptive);
 
 /**
- * Size in bytes of the memory of such a model, for `hysteron_adaptive_load_place`. 0 if there is no
- * such model.
+ * Size in bytes of the memory of such a model, for `hysteron_adaptive_load_place`. 0 if there is
+ * no such model.
  */
 size_t hysteron_adaptive_load_size(uint64_t model);
 
@@ -942,8 +942,8 @@ size_t hysteron_state_size(uint64_t model);
  * `uint64_t`. Steps, runs, saving and restoring then allocate nothing, also with errors. The state
  * has a copy of the weights.
  *
- * The memory belongs to the state until it is freed. An older object in it ends. Errors of time and
- * load have the codes `HYSTERON_TIME_STEP` and `HYSTERON_LOAD`.
+ * The memory belongs to the state until it is freed. An older object in it ends. Errors of time
+ * and load have the codes `HYSTERON_TIME_STEP` and `HYSTERON_LOAD`.
  */
 int32_t hysteron_state_place(uint64_t model, void *memory, size_t bytes, uint64_t *state);
 

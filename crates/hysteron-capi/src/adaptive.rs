@@ -128,8 +128,8 @@ pub unsafe extern "C" fn hysteron_adaptive_load_new(
     })
 }
 
-/// Size in bytes of the memory of such a model, for `hysteron_adaptive_load_place`. 0 if there is no
-/// such model.
+/// Size in bytes of the memory of such a model, for `hysteron_adaptive_load_place`. 0 if there is
+/// no such model.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_load_size(model: u64) -> usize {
     let size = |model: &_| LoadOfCaller::size(model).bytes();

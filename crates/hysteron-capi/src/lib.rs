@@ -5,7 +5,8 @@
 //! Every function that can fail returns a status: [`HYSTERON_OK`], the number of the library's
 //! error (`hysteron::Error::code`), or a number from 100 on for an error in the call itself.
 //! Results are written only with [`HYSTERON_OK`]. Counts are the exception: after an error they
-//! give the size needed, and arrays of a run, which may then have zeros. No panic leaves a function.
+//! give the size needed, and arrays of a run, which may then have zeros. No panic leaves a
+//! function.
 //!
 //! # Safety
 //! All functions have the same contract. A pointer is null, or it points to as many elements as the

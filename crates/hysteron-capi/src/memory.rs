@@ -60,9 +60,9 @@ impl Room {
         let numbers = self.start.cast::<f64>();
         let turns = numbers.wrapping_add(size.numbers).cast::<Turn<f64>>();
         const { assert!(align_of::<Turn<f64>>() <= align_of::<f64>()) };
-        // SAFETY: by the contract of `Arguments::room` the bytes are valid and nobody else uses them.
-        // They suffice for numbers and turns, which lie apart and aligned; each is written before
-        // the slice is made.
+        // SAFETY: by the contract of `Arguments::room` the bytes are valid and nobody else uses
+        // them. They suffice for numbers and turns, which lie apart and aligned; each is written
+        // before the slice is made.
         unsafe {
             (0..size.numbers).for_each(|n| numbers.add(n).write(0.0));
             (0..size.turns).for_each(|n| turns.add(n).write(Turn::default()));

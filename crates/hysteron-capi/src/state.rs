@@ -135,8 +135,8 @@ pub extern "C" fn hysteron_state_size(model: u64) -> usize {
 /// `uint64_t`. Steps, runs, saving and restoring then allocate nothing, also with errors. The state
 /// has a copy of the weights.
 ///
-/// The memory belongs to the state until it is freed. An older object in it ends. Errors of time and
-/// load have the codes `HYSTERON_TIME_STEP` and `HYSTERON_LOAD`.
+/// The memory belongs to the state until it is freed. An older object in it ends. Errors of time
+/// and load have the codes `HYSTERON_TIME_STEP` and `HYSTERON_LOAD`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_place(
     model: u64,

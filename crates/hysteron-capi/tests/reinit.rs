@@ -1,5 +1,5 @@
-//! Objects made again and again in the same memory, with success and without, between other calls in
-//! any order: an object does what the same object of the library does, or it is refused.
+//! Objects made again and again in the same memory, with success and without, between other calls
+//! in any order: an object does what the same object of the library does, or it is refused.
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
