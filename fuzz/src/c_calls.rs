@@ -45,31 +45,8 @@ pub enum Call {
     AdaptiveStep(Handle, Number, Number),
     AdaptivePredict(Handle, Number, Array),
     AdaptiveModel(Handle),
-    CoreModel {
-        memory: Slot,
-        kind: i8,
-        min: Number,
-        max: Number,
-        levels: u8,
-        weights: Array,
-    },
-    CoreState {
-        model: Slot,
-        memory: Slot,
-    },
-    CoreEstimator {
-        model: Slot,
-        memory: Slot,
-        method: i8,
-        weights: Array,
-    },
-    CoreStep(Slot, Slot, Number, Array),
-    CoreRun(Slot, Slot, Array, Array),
-    CoreInverseStep(Slot, Slot, Number, i8, Number, Array),
-    CoreSave(Slot, Array, Array),
-    CoreRestore(Slot, Slot, Array, Number),
-    CoreLearn(Slot, Slot, Slot, Number, Number),
-    CoreRebase(Slot, Slot),
+    StatePlace(Handle, Slot),
+    AdaptivePlace(Handle, i8, Slot),
     Error(u8),
 }
 
@@ -79,7 +56,7 @@ pub fn run(calls: &[Call]) {
     for call in calls {
         let before = user.room.numbers.clone();
         let code = user.call(call);
-        let known = matches!(code, 0..=11 | 20..=31 | 100..=105);
+        let known = matches!(code, 0..=14 | 20..=31 | 100..=105);
         assert!(known, "{code} of {call:?}");
         assert!(
             code == HYSTERON_OK || user.room.numbers == before,
@@ -124,17 +101,9 @@ impl User {
     }
 
     fn call(&mut self, call: &Call) -> i32 {
-        // SAFETY: every pointer is null or into the room, which has as many elements from there on
-        // as are told; only the interface writes into the slots, whose objects it gave out.
-        unsafe {
-            self.handles(call)
-                .or_else(|| self.core(call))
-                .expect("one of both has it")
-        }
-    }
-
-    unsafe fn handles(&mut self, call: &Call) -> Option<i32> {
-        Some(match *call {
+        // Every pointer is null or into the room, which has as many elements from there on as are
+        // told; only the interface writes into the slots, whose objects it gave out.
+        match *call {
             Call::ModelNew {
                 kind,
                 min,
@@ -222,114 +191,37 @@ impl User {
             Call::AdaptiveStep(handle, input, measured) => unsafe {
                 let mut learning = std::mem::MaybeUninit::uninit();
                 let adaptive = self.handle(handle);
-                hysteron_adaptive_step(adaptive, input.get(), measured.get(), learning.as_mut_ptr())
+                let (input, measured) = (input.get(), measured.get());
+                hysteron_adaptive_step(adaptive, input, f64::NAN, measured, learning.as_mut_ptr())
             },
             Call::AdaptivePredict(handle, input, to) => unsafe {
                 let (to, _) = self.room.doubles(to);
-                hysteron_adaptive_simulate(self.handle(handle), input.get(), to)
+                hysteron_adaptive_simulate(self.handle(handle), input.get(), f64::NAN, to)
             },
             Call::AdaptiveModel(handle) => {
                 let adaptive = self.handle(handle);
                 self.made(|_, to| unsafe { hysteron_adaptive_model(adaptive, to) })
             }
-            _ => return None,
-        })
-    }
-
-    unsafe fn core(&mut self, call: &Call) -> Option<i32> {
-        let room = &mut self.room;
-        Some(match *call {
-            Call::CoreModel {
-                memory,
-                kind,
-                min,
-                max,
-                levels,
-                weights,
-            } => unsafe {
-                let ((weights, count), (memory, bytes)) =
-                    (room.doubles(weights), room.memory(memory));
-                let (kind, levels, mut to) = (
-                    i32::from(kind),
-                    usize::from(levels % 8),
-                    std::ptr::null_mut(),
-                );
-                let (min, max) = (min.get(), max.get());
-                hysteron_core_model_init(
-                    memory, bytes, kind, min, max, levels, weights, count, &mut to,
-                )
-            },
-            Call::CoreState { model, memory } => unsafe {
-                let (memory, bytes) = room.memory(memory);
-                let mut to = std::ptr::null_mut();
-                hysteron_core_state_init(room.object(model), memory, bytes, &mut to)
-            },
-            Call::CoreEstimator {
-                model,
-                memory,
-                method,
-                weights,
-            } => unsafe {
-                let ((weights, count), (memory, bytes)) =
-                    (room.doubles(weights), room.memory(memory));
-                let (model, options, mut to) =
-                    (room.object(model), options(method), std::ptr::null_mut());
-                hysteron_core_estimator_init(
-                    model, &options, weights, count, 0.0, memory, bytes, &mut to,
-                )
-            },
-            Call::CoreStep(model, state, input, to) => unsafe {
-                let (to, _) = room.doubles(to);
-                let (model, state) = (room.object(model), room.object(state));
-                hysteron_core_step(model, state, input.get(), to, &mut 0)
-            },
-            Call::CoreRun(model, state, from, to) => unsafe {
-                let ((from, a), (to, b)) = (room.doubles(from), room.doubles(to));
-                hysteron_core_run(room.object(model), room.object(state), from, to, a.min(b))
-            },
-            Call::CoreInverseStep(model, state, target, heading, tolerance, to) => unsafe {
-                let (to, _) = room.doubles(to);
-                let (model, state) = (room.object(model), room.object(state));
-                let (target, heading, tolerance) =
-                    (target.get(), i32::from(heading), tolerance.get());
-                hysteron_core_inverse_step(model, state, target, heading, tolerance, to, &mut 0)
-            },
-            Call::CoreSave(state, points, input) => unsafe {
-                let ((points, capacity), (input, _)) = (room.doubles(points), room.doubles(input));
-                hysteron_core_state_save(room.object(state), points, capacity, &mut 0, input)
-            },
-            Call::CoreRestore(model, state, points, input) => unsafe {
-                let (points, count) = room.doubles(points);
-                let (model, state) = (room.object(model), room.object(state));
-                hysteron_core_state_restore(model, state, points, count, input.get())
-            },
-            Call::CoreLearn(estimator, model, state, input, measured) => unsafe {
-                let mut learning = std::mem::MaybeUninit::uninit();
-                let (estimator, model, state) = (
-                    room.object(estimator),
-                    room.object(model),
-                    room.object(state),
-                );
-                let (input, measured) = (input.get(), measured.get());
-                hysteron_core_estimator_step(
-                    estimator,
-                    model,
-                    state,
-                    input,
-                    measured,
-                    learning.as_mut_ptr(),
-                )
-            },
-            Call::CoreRebase(model, state) => unsafe {
-                hysteron_core_state_rebase(room.object(model), room.object(state))
-            },
+            Call::StatePlace(handle, slot) => {
+                let model = self.handle(handle);
+                self.made(|user, to| unsafe {
+                    let (memory, bytes) = user.room.memory(slot);
+                    hysteron_state_place(model, memory, bytes, to)
+                })
+            }
+            Call::AdaptivePlace(handle, method, slot) => {
+                let (model, options) = (self.handle(handle), options(method));
+                self.made(|user, to| unsafe {
+                    let (memory, bytes) = user.room.memory(slot);
+                    hysteron_adaptive_place(model, &options, memory, bytes, to)
+                })
+            }
             Call::Error(size) => unsafe {
                 let mut text = vec![0; usize::from(size)];
                 hysteron_last_error(text.as_mut_ptr(), text.len());
                 HYSTERON_OK
             },
-            _ => return None,
-        })
+        }
     }
 }
 

@@ -35,10 +35,11 @@ fn ok(status: i32) {
     assert_eq!(status, HYSTERON_OK);
 }
 
-/// Seconds per step by handle.
-fn handle(input: &[f64]) -> impl FnMut() -> f64 {
+/// Seconds per step of a state in memory of the library, or of the caller.
+fn state(input: &[f64], of_caller: bool) -> impl FnMut() -> f64 {
     let weights = random_weights(LEVELS);
     let (mut model, mut state) = (0, 0);
+    let mut memory = Vec::new();
     // SAFETY: every pointer is one to a variable or array here, with its count.
     unsafe {
         let (weights, count) = (weights.as_ptr(), weights.len());
@@ -53,53 +54,22 @@ fn handle(input: &[f64]) -> impl FnMut() -> f64 {
             1,
             &mut model,
         ));
-        ok(hysteron_state_new(model, &mut state));
+        if of_caller {
+            let bytes = hysteron_state_size(model);
+            memory.resize(bytes / 8, 0_u64);
+            let at = memory.as_mut_ptr().cast();
+            ok(hysteron_state_place(model, at, bytes, &mut state));
+        } else {
+            ok(hysteron_state_new(model, &mut state));
+        }
     }
     move || {
+        let _ = &memory;
         seconds(input.len(), || {
             let mut output = 0.0;
             for &t in input {
                 // SAFETY: as above.
                 ok(unsafe { hysteron_step(state, black_box(t), &mut output, null_mut()) });
-                black_box(output);
-            }
-        })
-    }
-}
-
-/// Seconds per step over memory of the caller.
-fn memory(input: &[f64]) -> impl FnMut() -> f64 {
-    let weights = random_weights(LEVELS);
-    let words = |bytes: usize| vec![0_u64; bytes.div_ceil(8)];
-    let mut of_model = words(hysteron_core_model_size(LEVELS, 1));
-    let mut of_state = words(hysteron_core_state_size(LEVELS));
-    move || {
-        let (mut model, mut state) = (null_mut(), null_mut());
-        // SAFETY: every pointer is one to a variable or array here, with its count.
-        unsafe {
-            let (memory, bytes) = (of_model.as_mut_ptr().cast(), 8 * of_model.len());
-            let (weights, count) = (weights.as_ptr(), weights.len());
-            ok(hysteron_core_model_init(
-                memory,
-                bytes,
-                HYSTERON_MKP,
-                20.0,
-                80.0,
-                LEVELS,
-                weights,
-                count,
-                &mut model,
-            ));
-            let (memory, bytes) = (of_state.as_mut_ptr().cast(), 8 * of_state.len());
-            ok(hysteron_core_state_init(model, memory, bytes, &mut state));
-        }
-        seconds(input.len(), || {
-            let mut output = 0.0;
-            for &t in input {
-                // SAFETY: as above.
-                ok(unsafe {
-                    hysteron_core_step(model, state, black_box(t), &mut output, null_mut())
-                });
                 black_box(output);
             }
         })
@@ -112,13 +82,13 @@ fn main() {
     ratio(
         "handle / Rust step, K = 20",
         "",
-        handle(&input),
+        state(&input, false),
         rust(&input),
     );
     ratio(
         "caller's memory / Rust step, K = 20",
         "",
-        memory(&input),
+        state(&input, true),
         rust(&input),
     );
     let few = &input[..SAMPLES / 10];
@@ -126,6 +96,6 @@ fn main() {
         "definition / handle, K = 20",
         "",
         definition(LEVELS, few),
-        handle(&input),
+        state(&input, false),
     );
 }

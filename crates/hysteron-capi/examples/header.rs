@@ -24,11 +24,11 @@ const ABOUT: &str = "\
  * Handles (uint64_t) are numbers. A handle that was freed or never given is refused. Handles may be
  * used from any thread.
  *
- * Functions `hysteron_core_...` do not allocate. Their objects lie in memory of the caller. An
- * object must not be moved, and it ends with its memory. Where an initialisation fails in memory
- * that has an object, that object either stays as it is or is refused from then on:
- * HYSTERON_HANDLE. Outputs of these functions are the sum over the operators, without offset and
- * sign; those of `hysteron_core_stages_...` are the model's, with all of its stages. Only one thread at a time may use an object that a call changes.
+ * A state or a learner has its numbers in memory of the library (`..._new`), or in memory of the
+ * caller (`..._size`, `..._place`). All other functions are the same for both. Over memory of the
+ * caller they allocate nothing, but for `hysteron_adaptive_model`, `hysteron_state_half_width` and
+ * the start HYSTERON_START_FITTED. The memory must stay where it is until the object is freed.
+ * Another object that is made in it ends the one before, whose handle is then refused.
  */";
 
 /// The header in the repository.

@@ -17,11 +17,11 @@
  * Handles (uint64_t) are numbers. A handle that was freed or never given is refused. Handles may be
  * used from any thread.
  *
- * Functions `hysteron_core_...` do not allocate. Their objects lie in memory of the caller. An
- * object must not be moved, and it ends with its memory. Where an initialisation fails in memory
- * that has an object, that object either stays as it is or is refused from then on:
- * HYSTERON_HANDLE. Outputs of these functions are the sum over the operators, without offset and
- * sign; those of `hysteron_core_stages_...` are the model's, with all of its stages. Only one thread at a time may use an object that a call changes.
+ * A state or a learner has its numbers in memory of the library (`..._new`), or in memory of the
+ * caller (`..._size`, `..._place`). All other functions are the same for both. Over memory of the
+ * caller they allocate nothing, but for `hysteron_adaptive_model`, `hysteron_state_half_width` and
+ * the start HYSTERON_START_FITTED. The memory must stay where it is until the object is freed.
+ * Another object that is made in it ends the one before, whose handle is then refused.
  */
 
 #ifndef HYSTERON_H
@@ -201,19 +201,9 @@
 #define HYSTERON_INTERNAL 106
 
 /**
- * The largest number of parts of weights that depend on the load.
- */
-#define HYSTERON_PARTS 8
-
-/**
  * How many numbers the stages behind the operators remember.
  */
 #define HYSTERON_BEHIND 5
-
-/**
- * Room for the constants of stages. There are fewer.
- */
-#define HYSTERON_CONSTANTS 32
 
 /**
  * Operator: modified Krasnosel'skii-Pokrovskii, 0 to 1.
@@ -344,31 +334,6 @@
 #define HYSTERON_INPUT_STUCK 7
 
 /**
- * An estimator in the caller's memory.
- */
-typedef struct HysteronCoreEstimator HysteronCoreEstimator;
-
-/**
- * A model in the caller's memory.
- */
-typedef struct HysteronCoreModel HysteronCoreModel;
-
-/**
- * An estimator of the shift, in the caller's memory.
- */
-typedef struct HysteronCoreShift HysteronCoreShift;
-
-/**
- * The stages around the operators, in the caller's memory.
- */
-typedef struct HysteronCoreStages HysteronCoreStages;
-
-/**
- * A state in the caller's memory.
- */
-typedef struct HysteronCoreState HysteronCoreState;
-
-/**
  * Options of adaptation. `hysteron_adaptation_default` writes the defaults.
  */
 typedef struct HysteronAdaptation {
@@ -432,30 +397,8 @@ typedef struct HysteronAdaptation {
 } HysteronAdaptation;
 
 /**
- * Result of a step that learns.
- */
-typedef struct HysteronLearning {
-  /**
-   * Output predicted before the estimator learned from the sample.
-   */
-  double output;
-  /**
-   * Measured output less predicted output.
-   */
-  double error;
-  /**
-   * Outcome: `HYSTERON_LEARNED` to `HYSTERON_INPUT_STUCK`.
-   */
-  int32_t outcome;
-  /**
-   * Where the input lay: `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
-   */
-  int32_t clipped;
-} HysteronLearning;
-
-/**
  * Options of the estimator of the shift: of a load that nobody measures.
- * `hysteron_shift_usual` and `hysteron_core_shift_usual` write those that follow from a model.
+ * `hysteron_shift_usual` writes those that follow from a model.
  */
 typedef struct HysteronShiftOptions {
   /**
@@ -496,6 +439,28 @@ typedef struct HysteronShiftOptions {
 } HysteronShiftOptions;
 
 /**
+ * Result of a step that learns.
+ */
+typedef struct HysteronLearning {
+  /**
+   * Output predicted before the estimator learned from the sample.
+   */
+  double output;
+  /**
+   * Measured output less predicted output.
+   */
+  double error;
+  /**
+   * Outcome: `HYSTERON_LEARNED` to `HYSTERON_INPUT_STUCK`.
+   */
+  int32_t outcome;
+  /**
+   * Where the input lay: `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
+   */
+  int32_t clipped;
+} HysteronLearning;
+
+/**
  * What the estimator of the shift found.
  */
 typedef struct HysteronShift {
@@ -513,94 +478,6 @@ typedef struct HysteronShift {
    */
   double load;
 } HysteronShift;
-
-/**
- * A constant of a stage: a list of numbers. The names, units and ranges are those of
- * `docs/model.md`. Without a name it is ignored.
- */
-typedef struct HysteronConstant {
-  /**
-   * Its name; null for none.
-   */
-  const char *name;
-  /**
-   * Its numbers; null for none.
-   */
-  const double *numbers;
-  /**
-   * How many there are. A stage whose constants have no numbers is not there.
-   */
-  size_t count;
-} HysteronConstant;
-
-/**
- * The constants of the stages around the operators. All zeros, and `sign` 1, is a model without
- * stages.
- *
- * ```text
- * T = body(drive)    x = W(a(load) T - s(load))    h = operators(x)
- * y = offset + o(load) + sign * behind(g(load) h)
- * ```
- */
-typedef struct HysteronStages {
-  /**
-   * 1: the output rises with the operators' sum; −1: it falls.
-   */
-  int32_t sign;
-  /**
-   * The output where the operators' sum is zero.
-   */
-  double offset;
-  /**
-   * The constants of all stages, in any order, each once.
-   */
-  struct HysteronConstant constants[HYSTERON_CONSTANTS];
-  /**
-   * Number of parts of weights that depend on the load, up to `HYSTERON_PARTS`; 0 for weights
-   * that do not. `offset` and the weights of the model have no effect then.
-   */
-  size_t part_count;
-  /**
-   * Number of weights of one part: `K (K + 1) / 2`.
-   */
-  size_t part_weight_count;
-  /**
-   * The output of each part where its sum is zero.
-   */
-  const double *part_offsets;
-  /**
-   * The weights of the parts, one part after the other. Their factors are the Bernstein
-   * polynomials of the load.
-   */
-  const double *part_weights;
-  /**
-   * The load of the first part, where `part_count` is not 0. A smaller load acts as this one.
-   */
-  double load_min;
-  /**
-   * The load of the last part, above `load_min`. A larger load acts as this one.
-   */
-  double load_max;
-} HysteronStages;
-
-/**
- * What the stages remember from one sample to the next. All zeros: there was no sample yet. A copy
- * of it is a saved state.
- */
-typedef struct HysteronStageState {
-  /**
-   * 1 after the first sample, 0 before it. The stages are at rest with that sample.
-   */
-  double started;
-  /**
-   * The temperature; without a thermal body, the input itself.
-   */
-  double temperature;
-  /**
-   * What each stage behind the operators remembers.
-   */
-  double behind[HYSTERON_BEHIND];
-} HysteronStageState;
 
 /**
  * Limits of the inverse. `hysteron_model_limits` writes those that a model has of its own.
@@ -732,66 +609,50 @@ typedef struct HysteronModelNeeds {
   double active_max;
 } HysteronModelNeeds;
 
+/**
+ * What the stages remember from one sample to the next. All zeros: there was no sample yet. A copy
+ * of it is a saved state.
+ */
+typedef struct HysteronStageState {
+  /**
+   * 1 after the first sample, 0 before it. The stages are at rest with that sample.
+   */
+  double started;
+  /**
+   * The temperature; without a thermal body, the input itself.
+   */
+  double temperature;
+  /**
+   * What each stage behind the operators remembers.
+   */
+  double behind[HYSTERON_BEHIND];
+} HysteronStageState;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
 
 /**
  * Makes a model that adapts all weights of `model` and its offset. `options` may be null for the
- * defaults.
+ * defaults. All operators are off.
  */
 int32_t hysteron_adaptive_new(uint64_t model, const struct HysteronAdaptation *options, uint64_t *adaptive);
 
 /**
- * Frees the handle.
+ * Size in bytes of the memory of such a model, for `hysteron_adaptive_place`. 0 if there is none
+ * for this model and these options.
  */
-int32_t hysteron_adaptive_free(uint64_t adaptive);
+size_t hysteron_adaptive_size(uint64_t model, const struct HysteronAdaptation *options);
 
 /**
- * Moves to `input`, predicts the output there, and learns from the output `measured`.
+ * As `hysteron_adaptive_new`, with all numbers in `memory` of the caller, as in
+ * `hysteron_state_place`.
  */
-int32_t hysteron_adaptive_step(uint64_t adaptive, double input, double measured, struct HysteronLearning *learning);
-
-/**
- * Moves to `input` and writes the output predicted there, without learning.
- */
-int32_t hysteron_adaptive_simulate(uint64_t adaptive, double input, double *output);
-
-/**
- * As `hysteron_inverse_step`, with the present weights. The inverse has a state of its own,
- * separate from the state that follows the plant. It starts with all operators off.
- */
-int32_t hysteron_adaptive_inverse_step(uint64_t adaptive,
-                                       double target,
-                                       int32_t heading,
-                                       double tolerance,
-                                       double *input,
-                                       int32_t *status);
-
-/**
- * Makes a model with the present weights and offset. Free it with `hysteron_model_free`.
- */
-int32_t hysteron_adaptive_model(uint64_t adaptive, uint64_t *model);
-
-/**
- * Switches all operators off, those of the inverse too. The weights stay.
- */
-int32_t hysteron_adaptive_reset(uint64_t adaptive);
-
-/**
- * Stops learning (`frozen` not 0), or resumes it (0).
- */
-int32_t hysteron_adaptive_freeze(uint64_t adaptive, int32_t frozen);
-
-/**
- * Takes the present weights as the last good ones.
- */
-int32_t hysteron_adaptive_keep(uint64_t adaptive);
-
-/**
- * Returns to the last good weights.
- */
-int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
+int32_t hysteron_adaptive_place(uint64_t model,
+                                const struct HysteronAdaptation *options,
+                                void *memory,
+                                size_t bytes,
+                                uint64_t *adaptive);
 
 /**
  * Makes a model that follows a load that nobody measures. It follows the shift of the axis alone;
@@ -803,65 +664,92 @@ int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
 int32_t hysteron_adaptive_load_new(uint64_t model,
                                    double load,
                                    const struct HysteronShiftOptions *options,
-                                   uint64_t *adaptive_load);
+                                   uint64_t *adaptive);
 
 /**
- * Frees the handle.
+ * Size in bytes of the memory of such a model, for `hysteron_adaptive_load_place`. 0 if there is
+ * no such model.
  */
-int32_t hysteron_adaptive_load_free(uint64_t adaptive_load);
+size_t hysteron_adaptive_load_size(uint64_t model);
+
+/**
+ * As `hysteron_adaptive_load_new`, with all numbers in `memory` of the caller, as in
+ * `hysteron_state_place`.
+ */
+int32_t hysteron_adaptive_load_place(uint64_t model,
+                                     double load,
+                                     const struct HysteronShiftOptions *options,
+                                     void *memory,
+                                     size_t bytes,
+                                     uint64_t *adaptive);
+
+/**
+ * Frees a learner of either kind. Memory of the caller stays the caller's.
+ */
+int32_t hysteron_adaptive_free(uint64_t adaptive);
 
 /**
  * Moves to `input`, predicts the output there, and learns from the output `measured`. `dt` is as
- * for `hysteron_step_in`. After an error nothing has changed.
+ * for `hysteron_step_in`; without stages it has no effect. After an error nothing has changed.
  */
-int32_t hysteron_adaptive_load_step(uint64_t adaptive_load,
-                                    double input,
-                                    double dt,
-                                    double measured,
-                                    struct HysteronLearning *learning);
+int32_t hysteron_adaptive_step(uint64_t adaptive,
+                               double input,
+                               double dt,
+                               double measured,
+                               struct HysteronLearning *learning);
 
 /**
  * Moves to `input` and writes the output predicted there, without learning.
  */
-int32_t hysteron_adaptive_load_simulate(uint64_t adaptive_load, double input, double dt, double *output);
+int32_t hysteron_adaptive_simulate(uint64_t adaptive, double input, double dt, double *output);
 
 /**
- * As `hysteron_inverse_step_in`, at the present shift. The inverse has a state of its own, separate
- * from the state that follows the plant.
+ * As `hysteron_inverse_step_in`, with what was learned. The inverse has a state of its own,
+ * separate from the state that follows the plant. It starts with all operators off.
  */
-int32_t hysteron_adaptive_load_inverse_step(uint64_t adaptive_load,
-                                            double target,
-                                            int32_t heading,
-                                            double tolerance,
-                                            double dt,
-                                            double *input,
-                                            int32_t *status);
+int32_t hysteron_adaptive_inverse_step(uint64_t adaptive,
+                                       double target,
+                                       int32_t heading,
+                                       double tolerance,
+                                       double dt,
+                                       double *input,
+                                       int32_t *status);
 
 /**
- * Writes the shift, and the load that it tells.
+ * Makes a model with what was learned: with the present weights and offset, or with the present
+ * shift, which depends on no load. Free it with `hysteron_model_free`.
  */
-int32_t hysteron_adaptive_load_shift(uint64_t adaptive_load, struct HysteronShift *shift);
+int32_t hysteron_adaptive_model(uint64_t adaptive, uint64_t *model);
 
 /**
- * Makes a model with the present shift, which depends on no load. Free it with
- * `hysteron_model_free`.
+ * Writes the shift of a learner of `hysteron_adaptive_load_new`, and the load that it tells.
  */
-int32_t hysteron_adaptive_load_model(uint64_t adaptive_load, uint64_t *model);
+int32_t hysteron_adaptive_shift(uint64_t adaptive, struct HysteronShift *shift);
 
 /**
- * Switches all operators off, those of the inverse too. The shift stays.
+ * Switches all operators off, those of the inverse too. What was learned stays.
  */
-int32_t hysteron_adaptive_load_reset(uint64_t adaptive_load);
+int32_t hysteron_adaptive_reset(uint64_t adaptive);
 
 /**
  * Sets the state of the inverse to that of the measured input.
  */
-int32_t hysteron_adaptive_load_align(uint64_t adaptive_load);
+int32_t hysteron_adaptive_align(uint64_t adaptive);
 
 /**
  * Stops learning (`frozen` not 0), or resumes it (0).
  */
-int32_t hysteron_adaptive_load_freeze(uint64_t adaptive_load, int32_t frozen);
+int32_t hysteron_adaptive_freeze(uint64_t adaptive, int32_t frozen);
+
+/**
+ * Takes the present weights of a learner of `hysteron_adaptive_new` as the last good ones.
+ */
+int32_t hysteron_adaptive_keep(uint64_t adaptive);
+
+/**
+ * Returns to the last good weights, of a learner of `hysteron_adaptive_new`.
+ */
+int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
 
 /**
  * Makes a batch of `lanes` models with a state each, which move together. A lane is one of them
@@ -936,63 +824,6 @@ int32_t hysteron_batch_run_in(uint64_t batch,
 int32_t hysteron_batch_state(uint64_t batch, size_t lane, uint64_t *state);
 
 /**
- * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
- * be aligned like a `uint64_t`.
- */
-size_t hysteron_core_stages_size(const struct HysteronStages *stages);
-
-/**
- * Makes stages around the operators of `model` in `memory`. The constants are copied, with their
- * arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every
- * model of as many levels.
- *
- * Where the weights depend on the load, the operators are those of `model`, and its weights have
- * no effect.
- */
-int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
-                                  const struct HysteronStages *constants,
-                                  void *memory,
-                                  size_t bytes,
-                                  struct HysteronCoreStages **stages);
-
-/**
- * Moves by one sample and writes the output `y`, with offset and sign. `input`, `dt` and `load`
- * are as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is
- * what the stages remember, zeros before the first sample. `clipped` may be null. After an error
- * nothing has moved.
- *
- * Where the weights depend on the load, the call first gives `model` those of this load, in
- * `O(K²)` if the load has changed. Stages and model are then changed, so only one thread at a time
- * may use them. Otherwise they are only read. Several states may take turns.
- */
-int32_t hysteron_core_stages_step(struct HysteronCoreStages *stages,
-                                  struct HysteronCoreModel *model,
-                                  struct HysteronCoreState *state,
-                                  struct HysteronStageState *memory,
-                                  double input,
-                                  double dt,
-                                  double load,
-                                  double *output,
-                                  int32_t *clipped);
-
-/**
- * Finds the input for the output `target` and moves there. Arguments are as for
- * `hysteron_inverse_step_in`; `limits` may be null for none. After an error nothing has moved.
- */
-int32_t hysteron_core_stages_inverse_step(struct HysteronCoreStages *stages,
-                                          struct HysteronCoreModel *model,
-                                          struct HysteronCoreState *state,
-                                          struct HysteronStageState *memory,
-                                          double target,
-                                          int32_t heading,
-                                          double tolerance,
-                                          double dt,
-                                          double load,
-                                          const struct HysteronLimits *limits,
-                                          double *input,
-                                          int32_t *status);
-
-/**
  * The text of a status code. It is never null and stays valid. `hysteron_last_error` gives the
  * details of the last error.
  */
@@ -1004,55 +835,7 @@ const char *hysteron_error_message(int32_t code);
 const char *hysteron_version(void);
 
 /**
- * Size in bytes of an estimator for a model with `levels` levels. 0 if there is no such estimator.
- * The memory has to be aligned like a `uint64_t`.
- */
-size_t hysteron_core_estimator_size(size_t levels, const struct HysteronAdaptation *options);
-
-/**
- * Makes an estimator of all weights of `model` and of an offset. It starts from the weights and
- * the offset given, and writes these weights to the model. Make states after this call, or bring
- * older ones up to date with `hysteron_core_state_rebase`.
- */
-int32_t hysteron_core_estimator_init(struct HysteronCoreModel *model,
-                                     const struct HysteronAdaptation *options,
-                                     const double *weights,
-                                     size_t count,
-                                     double offset,
-                                     void *memory,
-                                     size_t bytes,
-                                     struct HysteronCoreEstimator **estimator);
-
-/**
- * Moves `state` to `input`, predicts the output with the present weights and offset, and learns
- * from the output `measured`. `state` is brought up to date with the weights. Other states of this
- * model are refused until `hysteron_core_state_rebase` brings them up to date.
- */
-int32_t hysteron_core_estimator_step(struct HysteronCoreEstimator *estimator,
-                                     struct HysteronCoreModel *model,
-                                     struct HysteronCoreState *state,
-                                     double input,
-                                     double measured,
-                                     struct HysteronLearning *learning);
-
-/**
- * Writes the present offset.
- */
-int32_t hysteron_core_estimator_offset(const struct HysteronCoreEstimator *estimator, double *offset);
-
-/**
- * Stops learning (`frozen` not 0), or resumes it (0).
- */
-int32_t hysteron_core_estimator_freeze(struct HysteronCoreEstimator *estimator, int32_t frozen);
-
-/**
- * Brings a state of `model` up to date after an estimator changed the weights. An inverse that
- * runs beside the estimator needs it for its own state.
- */
-int32_t hysteron_core_state_rebase(const struct HysteronCoreModel *model, struct HysteronCoreState *state);
-
-/**
- * The text of the last error in this thread. Functions `hysteron_core_…` leave no text.
+ * The text of the last error in this thread, up to 1023 bytes.
  *
  * Copies as much of it as fits into the `size` bytes of `text`, with a zero byte at the end.
  * Returns the size of the whole text in bytes, with the zero byte. `text` may be null to ask for
@@ -1066,91 +849,6 @@ size_t hysteron_last_error(char *text, size_t size);
  * limits.
  */
 int32_t hysteron_model_limits(uint64_t model, struct HysteronLimits *limits);
-
-/**
- * Size in bytes of a model with `levels` levels and `tables` tables: 1, or 2 for adaptation by
- * increments. 0 if there is no such model. The memory has to be aligned like a `uint64_t`.
- */
-size_t hysteron_core_model_size(size_t levels, size_t tables);
-
-/**
- * Makes a model in `memory`. Weights are as for `hysteron_model_new`; they are copied.
- */
-int32_t hysteron_core_model_init(void *memory,
-                                 size_t bytes,
-                                 int32_t operator_kind,
-                                 double min,
-                                 double max,
-                                 size_t levels,
-                                 const double *weights,
-                                 size_t count,
-                                 struct HysteronCoreModel **model);
-
-/**
- * Size in bytes of a state of a model with `levels` levels. 0 if there is no such model. The
- * memory has to be aligned like a `uint64_t`.
- */
-size_t hysteron_core_state_size(size_t levels);
-
-/**
- * Makes a state of `model` in `memory`, with all operators off.
- */
-int32_t hysteron_core_state_init(const struct HysteronCoreModel *model,
-                                 void *memory,
-                                 size_t bytes,
-                                 struct HysteronCoreState **state);
-
-/**
- * Switches all operators off.
- */
-int32_t hysteron_core_state_reset(const struct HysteronCoreModel *model, struct HysteronCoreState *state);
-
-/**
- * Moves to `input` and writes the output `Σ μ γ`. `clipped` may be null.
- */
-int32_t hysteron_core_step(const struct HysteronCoreModel *model,
-                           struct HysteronCoreState *state,
-                           double input,
-                           double *output,
-                           int32_t *clipped);
-
-/**
- * As `hysteron_run`.
- */
-int32_t hysteron_core_run(const struct HysteronCoreModel *model,
-                          struct HysteronCoreState *state,
-                          const double *input,
-                          double *output,
-                          size_t count);
-
-/**
- * As `hysteron_inverse_step`.
- */
-int32_t hysteron_core_inverse_step(const struct HysteronCoreModel *model,
-                                   struct HysteronCoreState *state,
-                                   double target,
-                                   int32_t heading,
-                                   double tolerance,
-                                   double *input,
-                                   int32_t *status);
-
-/**
- * As `hysteron_state_save`.
- */
-int32_t hysteron_core_state_save(const struct HysteronCoreState *state,
-                                 double *points,
-                                 size_t capacity,
-                                 size_t *count,
-                                 double *input);
-
-/**
- * As `hysteron_state_restore`.
- */
-int32_t hysteron_core_state_restore(const struct HysteronCoreModel *model,
-                                    struct HysteronCoreState *state,
-                                    const double *points,
-                                    size_t count,
-                                    double input);
 
 /**
  * Reads the model file at `path`. Free the handle with `hysteron_model_free`.
@@ -1219,92 +917,73 @@ int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity,
 int32_t hysteron_model_quantity(uint64_t model, int32_t quantity, char *text, size_t size, size_t *needed);
 
 /**
- * Writes the usual options for `model` between `stages`.
- */
-int32_t hysteron_core_shift_usual(const struct HysteronCoreModel *model,
-                                  const struct HysteronCoreStages *stages,
-                                  struct HysteronShiftOptions *options);
-
-/**
- * Size in bytes of an estimator of the shift. The memory has to be aligned like a `uint64_t`.
- */
-size_t hysteron_core_shift_size(void);
-
-/**
- * Makes an estimator of the shift for `model` between `stages`, in `memory`. `options` may be null
- * for the usual ones. A model without stages takes stages of zeros with the sign 1.
- */
-int32_t hysteron_core_shift_init(const struct HysteronCoreModel *model,
-                                 const struct HysteronCoreStages *stages,
-                                 const struct HysteronShiftOptions *options,
-                                 void *memory,
-                                 size_t bytes,
-                                 struct HysteronCoreShift **shift);
-
-/**
- * Moves by one sample, predicts the output, and learns from the output `measured`. Arguments are
- * as for `hysteron_core_stages_step`, but `load` is the load that the shift departs from: always
- * the same, `NAN` for a model without a load. After an error nothing has changed.
- */
-int32_t hysteron_core_shift_step(struct HysteronCoreShift *shift,
-                                 struct HysteronCoreStages *stages,
-                                 struct HysteronCoreModel *model,
-                                 struct HysteronCoreState *state,
-                                 struct HysteronStageState *memory,
-                                 double input,
-                                 double dt,
-                                 double load,
-                                 double measured,
-                                 struct HysteronLearning *learning);
-
-/**
- * As `hysteron_core_stages_inverse_step`, at the present shift from the load `load`. `state` and
- * `memory` are those of the inverse: the plant is elsewhere.
- */
-int32_t hysteron_core_shift_inverse_step(const struct HysteronCoreShift *shift,
-                                         struct HysteronCoreStages *stages,
-                                         struct HysteronCoreModel *model,
-                                         struct HysteronCoreState *state,
-                                         struct HysteronStageState *memory,
-                                         double target,
-                                         int32_t heading,
-                                         double tolerance,
-                                         double dt,
-                                         double load,
-                                         const struct HysteronLimits *limits,
-                                         double *input,
-                                         int32_t *status);
-
-/**
- * Writes the shift, and the load that it tells, for a model that was told the load `load`.
- */
-int32_t hysteron_core_shift_read(const struct HysteronCoreShift *shift,
-                                 const struct HysteronCoreStages *stages,
-                                 double load,
-                                 struct HysteronShift *found);
-
-/**
- * Takes `value` for the shift, as uncertain as at the start. Beyond the reach it is the nearest one
- * within.
- */
-int32_t hysteron_core_shift_reset(struct HysteronCoreShift *shift, double value);
-
-/**
- * Tells the output that the model left alone expects at the next `hysteron_core_shift_step`, from a
- * state of its own and at the load that the shift departs from. A channel that stands still is found
- * by that, and what was learned from it is undone. Without this call none is found.
- */
-int32_t hysteron_core_shift_expect(struct HysteronCoreShift *shift, double output);
-
-/**
- * Stops learning (`frozen` not 0), or resumes it (0).
- */
-int32_t hysteron_core_shift_freeze(struct HysteronCoreShift *shift, int32_t frozen);
-
-/**
  * Writes the usual options for `model`.
  */
 int32_t hysteron_shift_usual(uint64_t model, struct HysteronShiftOptions *options);
+
+/**
+ * Makes a state of `model`, as the fit found it before the first sample, or with all operators off
+ * where it found none. The stages are at rest with the first sample. `model` may be freed
+ * before the state.
+ *
+ * The model may have stages. Move the state by the functions
+ * whose names end with `_in`, which take time and load. The others refuse what they cannot know.
+ */
+int32_t hysteron_state_new(uint64_t model, uint64_t *state);
+
+/**
+ * Size in bytes of the memory of a state of `model`, for `hysteron_state_place`. 0 if there is no
+ * such model.
+ */
+size_t hysteron_state_size(uint64_t model);
+
+/**
+ * As `hysteron_state_new`, with the numbers of the state in `memory` of the caller, aligned like a
+ * `uint64_t`. Steps, runs, saving and restoring then allocate nothing, also with errors. The state
+ * has a copy of the weights.
+ *
+ * The memory belongs to the state until it is freed. An older object in it ends. Errors of time
+ * and load have the codes `HYSTERON_TIME_STEP` and `HYSTERON_LOAD`.
+ */
+int32_t hysteron_state_place(uint64_t model, void *memory, size_t bytes, uint64_t *state);
+
+/**
+ * Frees a state. Memory of the caller stays the caller's.
+ */
+int32_t hysteron_state_free(uint64_t state);
+
+/**
+ * Switches all operators off, as at the bottom of the plane. The stages are at rest with the
+ * next sample.
+ */
+int32_t hysteron_state_reset(uint64_t state);
+
+/**
+ * Switches all operators on, as at the top of the plane. The stages are at rest with the
+ * next sample.
+ */
+int32_t hysteron_state_saturate(uint64_t state);
+
+/**
+ * Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
+ * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). The stages are at rest with the
+ * next sample.
+ */
+int32_t hysteron_state_start(uint64_t state, int32_t start);
+
+/**
+ * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
+ * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
+ * becomes the number of turning points, also if `capacity` is too small.
+ */
+int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
+
+/**
+ * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
+ * with the same plane. The stages are at rest with the next sample, unless
+ * `hysteron_state_restore_stages` comes after it.
+ */
+int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
 
 /**
  * Saves what the stages remember. Together with `hysteron_state_save` it is the whole
@@ -1325,116 +1004,18 @@ int32_t hysteron_state_restore_stages(uint64_t state, const struct HysteronStage
 int32_t hysteron_state_temperature(uint64_t state, double *temperature);
 
 /**
- * Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The lists are
- * those of the model: they end when it and its states are freed. Every constant has its name, also
- * where it has no numbers.
- */
-int32_t hysteron_model_stages(uint64_t model, struct HysteronStages *stages);
-
-/**
- * Makes a state of `model`, as the fit found it before the first sample, or with all operators off
- * where it found none. The stages are at rest with the first sample. `model` may be freed
- * before the state.
- *
- * The model may have stages. Move the state by the functions
- * whose names end with `_in`, which take time and load. The others refuse what they cannot know.
- */
-int32_t hysteron_state_new(uint64_t model, uint64_t *state);
-
-/**
- * Frees a state.
- */
-int32_t hysteron_state_free(uint64_t state);
-
-/**
- * Switches all operators off, as at the bottom of the plane. The stages are at rest with the
- * next sample.
- */
-int32_t hysteron_state_reset(uint64_t state);
-
-/**
- * Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
- * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). The stages are at rest with the
- * next sample.
- */
-int32_t hysteron_state_start(uint64_t state, int32_t start);
-
-/**
- * Switches all operators on, as at the top of the plane. The stages are at rest with the
- * next sample.
- */
-int32_t hysteron_state_saturate(uint64_t state);
-
-/**
- * Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
- * or `HYSTERON_HIGH` for an input of the operators outside the plane. It may be null.
- */
-int32_t hysteron_step(uint64_t state, double input, double *output, int32_t *clipped);
-
-/**
- * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
- * error, as of an input that is not finite, the state stays as it is.
- */
-int32_t hysteron_run(uint64_t state, const double *input, double *output, size_t count);
-
-/**
- * Finds the input that gives `target` and moves the state there. `status` becomes
- * `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH`,
- * `HYSTERON_PASSED` or `HYSTERON_LIMITED`.
- *
- * `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
- * `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
- * `tolerance`, in the output's unit, is held.
- */
-int32_t hysteron_inverse_step(uint64_t state,
-                              double target,
-                              int32_t heading,
-                              double tolerance,
-                              double *input,
-                              int32_t *status);
-
-/**
- * Finds the inputs for `count` targets, one after the other, and moves the state through them.
- * `heading` has `count` elements as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD`.
- * `status` has `count` elements, or is null. Arrays must not overlap. If a target or a heading is
- * not valid, the state stays as it is.
- */
-int32_t hysteron_inverse_run(uint64_t state,
-                             const double *target,
-                             const int32_t *heading,
-                             double tolerance,
-                             double *input,
-                             int32_t *status,
-                             size_t count);
-
-/**
- * Writes where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or
- * `HYSTERON_FALLING`, or `HYSTERON_HOLD` if the series never moves. Reversals of up to `tolerance`
- * are noise.
- */
-int32_t hysteron_headings(const double *target, size_t count, double tolerance, int32_t *heading);
-
-/**
- * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
- * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
- * becomes the number of turning points, also if `capacity` is too small.
- */
-int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
-
-/**
- * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
- * with the same plane. The stages are at rest with the next sample, unless
- * `hysteron_state_restore_stages` comes after it.
- */
-int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
-
-/**
  * Writes how far the output may really be from the modelled one where the state is, in the
  * output's unit: half the width of the model's 95 % band, or 1.96 times its error on what was held
  * out of its fit, whichever is wider. `NAN` for a model that has neither. After an inverse step it
  * says how far the target may be missed that the status reports as reached.
  */
 int32_t hysteron_state_half_width(uint64_t state, double *half_width);
+
+/**
+ * Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
+ * or `HYSTERON_HIGH` for an input of the operators outside the plane. It may be null.
+ */
+int32_t hysteron_step(uint64_t state, double input, double *output, int32_t *clipped);
 
 /**
  * As `hysteron_step`, for any model.
@@ -1445,6 +1026,12 @@ int32_t hysteron_state_half_width(uint64_t state, double *half_width);
  * not given. `hysteron_model_needs` says what a model needs.
  */
 int32_t hysteron_step_in(uint64_t state, double input, double dt, double load, double *output, int32_t *clipped);
+
+/**
+ * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
+ * error, as of an input that is not finite, the state stays as it is.
+ */
+int32_t hysteron_run(uint64_t state, const double *input, double *output, size_t count);
 
 /**
  * As `hysteron_run`, for any model. After any error the state stays as it is.
@@ -1462,6 +1049,22 @@ int32_t hysteron_run_in(uint64_t state,
                         double *output,
                         int32_t *clipped,
                         size_t count);
+
+/**
+ * Finds the input that gives `target` and moves the state there. `status` becomes
+ * `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH`,
+ * `HYSTERON_PASSED` or `HYSTERON_LIMITED`.
+ *
+ * `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
+ * `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
+ * `tolerance`, in the output's unit, is held.
+ */
+int32_t hysteron_inverse_step(uint64_t state,
+                              double target,
+                              int32_t heading,
+                              double tolerance,
+                              double *input,
+                              int32_t *status);
 
 /**
  * As `hysteron_inverse_step`, for any model. `dt` and `load` are as for `hysteron_step_in`.
@@ -1482,6 +1085,20 @@ int32_t hysteron_inverse_step_in(uint64_t state,
                                  int32_t *status);
 
 /**
+ * Finds the inputs for `count` targets, one after the other, and moves the state through them.
+ * `heading` has `count` elements as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD`.
+ * `status` has `count` elements, or is null. Arrays must not overlap. If a target or a heading is
+ * not valid, the state stays as it is.
+ */
+int32_t hysteron_inverse_run(uint64_t state,
+                             const double *target,
+                             const int32_t *heading,
+                             double tolerance,
+                             double *input,
+                             int32_t *status,
+                             size_t count);
+
+/**
  * As `hysteron_inverse_run`, for any model. `time`, `last_time` and `load` are as for
  * `hysteron_run_in`, `limits` as for `hysteron_inverse_step_in`. After any error the state stays
  * as it is.
@@ -1497,6 +1114,13 @@ int32_t hysteron_inverse_run_in(uint64_t state,
                                 double *input,
                                 int32_t *status,
                                 size_t count);
+
+/**
+ * Writes where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or
+ * `HYSTERON_FALLING`, or `HYSTERON_HOLD` if the series never moves. Reversals of up to `tolerance`
+ * are noise.
+ */
+int32_t hysteron_headings(const double *target, size_t count, double tolerance, int32_t *heading);
 
 /**
  * Fills in the usual options, of the method that `method` names.

@@ -1,23 +1,37 @@
-//! Models that learn, by handle.
+//! Models that learn.
 
 use crate::fault::{Result, guard};
-use crate::handles::Table;
+use crate::learners::{LoadOfCaller, WeightsOfCaller};
 use crate::model::MODELS;
+use crate::objects::{LEARNERS, Learns};
 use crate::pointer::Arguments;
+use crate::shift_options::{HysteronShift, HysteronShiftOptions};
+use crate::steps::given;
 use crate::types::{self, HysteronAdaptation, HysteronLearning, status as status_constant};
-use hysteron::{Adaptation, Adaptive};
-use std::sync::{Mutex, PoisonError};
+use hysteron::{Adaptation, Adaptive, AdaptiveLoad, Sample, Wanted};
+use std::ffi::c_void;
 
-static LEARNERS: Table<Mutex<Adaptive>> = Table::new(3);
+/// Calls `work` with a learner, in a function without pointers.
+fn with(adaptive: u64, work: impl FnOnce(&mut (dyn Learns + 'static)) -> Result<()>) -> Result<()> {
+    LEARNERS.with(adaptive, "adaptive", &mut Arguments::default(), work)
+}
 
-fn with(adaptive: u64, work: impl FnOnce(&mut Adaptive) -> Result<()>) -> Result<()> {
-    let learner = LEARNERS.get(adaptive, "adaptive")?;
-    let mut learner = learner.lock().unwrap_or_else(PoisonError::into_inner);
-    work(&mut learner)
+impl Arguments {
+    /// Options that may be null for the defaults.
+    ///
+    /// # Safety
+    /// `options` is null or valid for a read.
+    unsafe fn adaptation(&mut self, options: *const HysteronAdaptation) -> Result<Adaptation<f64>> {
+        if options.is_null() {
+            return Ok(Adaptation::default());
+        }
+        // SAFETY: the caller's promise; every bit pattern is a value of each field.
+        unsafe { self.value(options, "options")? }.adaptation()
+    }
 }
 
 /// Makes a model that adapts all weights of `model` and its offset. `options` may be null for the
-/// defaults.
+/// defaults. All operators are off.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_new(
     model: u64,
@@ -27,39 +41,158 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
     guard(|| {
         let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let out = unsafe { arguments.out(adaptive, "adaptive")? };
-        let options = if options.is_null() {
-            Adaptation::default()
-        } else {
-            // SAFETY: the contract of the crate; every bit pattern is a value of each field.
-            unsafe { arguments.value(options, "options")? }.adaptation()?
+        let (out, options) = unsafe {
+            (
+                arguments.out(adaptive, "adaptive")?,
+                arguments.adaptation(options)?,
+            )
         };
         let model = MODELS.get(model, "model")?;
-        let adaptive = Adaptive::new(&model, options)?;
-        out.set(LEARNERS.insert(Mutex::new(adaptive))?);
+        let learner: Box<dyn Learns> = Box::new(Adaptive::new(&model, options)?);
+        out.set(LEARNERS.insert(learner.into())?);
         Ok(())
     })
 }
 
-/// Frees the handle.
+/// Size in bytes of the memory of such a model, for `hysteron_adaptive_place`. 0 if there is none
+/// for this model and these options.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_size(
+    model: u64,
+    options: *const HysteronAdaptation,
+) -> usize {
+    // SAFETY: the contract of the crate.
+    let options = unsafe { Arguments::default().adaptation(options) };
+    let size = |options: Adaptation<f64>| {
+        let model = MODELS.get(model, "model")?;
+        Ok(WeightsOfCaller::size(&model, options.method)?.bytes())
+    };
+    options.and_then(size).unwrap_or(0)
+}
+
+/// As `hysteron_adaptive_new`, with all numbers in `memory` of the caller, as in
+/// `hysteron_state_place`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_place(
+    model: u64,
+    options: *const HysteronAdaptation,
+    memory: *mut c_void,
+    bytes: usize,
+    adaptive: *mut u64,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let (room, out, options) = unsafe {
+            (
+                arguments.room(memory, bytes)?,
+                arguments.out(adaptive, "adaptive")?,
+                arguments.adaptation(options)?,
+            )
+        };
+        let model = MODELS.get(model, "model")?;
+        let make = |lent: &mut _| -> Result<Box<dyn Learns>> {
+            Ok(Box::new(WeightsOfCaller::new(&model, options, lent)?))
+        };
+        let size = WeightsOfCaller::size(&model, options.method)?;
+        out.set(LEARNERS.place(room, size, make)?);
+        Ok(())
+    })
+}
+
+/// Makes a model that follows a load that nobody measures. It follows the shift of the axis alone;
+/// the weights stay, or are those of the load that the shift tells.
+///
+/// `load` is the load to start at, `NAN` for the middle of the model's range. `options` may be null
+/// for the usual ones (`hysteron_shift_usual`). All operators are off.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_load_new(
+    model: u64,
+    load: f64,
+    options: *const HysteronShiftOptions,
+    adaptive: *mut u64,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let (out, options) = unsafe {
+            (
+                arguments.out(adaptive, "adaptive")?,
+                arguments.shift_options(options)?,
+            )
+        };
+        let model = MODELS.get(model, "model")?;
+        let learner: Box<dyn Learns> = Box::new(AdaptiveLoad::new(&model, given(load), options)?);
+        out.set(LEARNERS.insert(learner.into())?);
+        Ok(())
+    })
+}
+
+/// Size in bytes of the memory of such a model, for `hysteron_adaptive_load_place`. 0 if there is
+/// no such model.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_load_size(model: u64) -> usize {
+    let size = |model: &_| LoadOfCaller::size(model).bytes();
+    MODELS.get(model, "model").map_or(0, |model| size(&model))
+}
+
+/// As `hysteron_adaptive_load_new`, with all numbers in `memory` of the caller, as in
+/// `hysteron_state_place`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_load_place(
+    model: u64,
+    load: f64,
+    options: *const HysteronShiftOptions,
+    memory: *mut c_void,
+    bytes: usize,
+    adaptive: *mut u64,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let (room, out, options) = unsafe {
+            (
+                arguments.room(memory, bytes)?,
+                arguments.out(adaptive, "adaptive")?,
+                arguments.shift_options(options)?,
+            )
+        };
+        let model = MODELS.get(model, "model")?;
+        let make = |lent: &mut _| -> Result<Box<dyn Learns>> {
+            Ok(Box::new(LoadOfCaller::new(
+                &model,
+                given(load),
+                options,
+                lent,
+            )?))
+        };
+        out.set(LEARNERS.place(room, LoadOfCaller::size(&model), make)?);
+        Ok(())
+    })
+}
+
+/// Frees a learner of either kind. Memory of the caller stays the caller's.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_free(adaptive: u64) -> i32 {
     guard(|| LEARNERS.remove(adaptive, "adaptive"))
 }
 
-/// Moves to `input`, predicts the output there, and learns from the output `measured`.
+/// Moves to `input`, predicts the output there, and learns from the output `measured`. `dt` is as
+/// for `hysteron_step_in`; without stages it has no effect. After an error nothing has changed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_step(
     adaptive: u64,
     input: f64,
+    dt: f64,
     measured: f64,
     learning: *mut HysteronLearning,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let learning = unsafe { Arguments::default().out(learning, "learning")? };
-        with(adaptive, |learner| {
-            learning.set(learner.step(input, measured)?.into());
+        let learning = unsafe { arguments.out(learning, "learning")? };
+        LEARNERS.with(adaptive, "adaptive", &mut arguments, |learner| {
+            learning.set(learner.step(sample(input, dt), measured)?.into());
             Ok(())
         })
     })
@@ -70,19 +203,21 @@ pub unsafe extern "C" fn hysteron_adaptive_step(
 pub unsafe extern "C" fn hysteron_adaptive_simulate(
     adaptive: u64,
     input: f64,
+    dt: f64,
     output: *mut f64,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let output = unsafe { Arguments::default().out(output, "output")? };
-        with(adaptive, |learner| {
-            output.set(learner.simulate(input)?);
+        let output = unsafe { arguments.out(output, "output")? };
+        LEARNERS.with(adaptive, "adaptive", &mut arguments, |learner| {
+            output.set(learner.simulate(sample(input, dt))?);
             Ok(())
         })
     })
 }
 
-/// As `hysteron_inverse_step`, with the present weights. The inverse has a state of its own,
+/// As `hysteron_inverse_step_in`, with what was learned. The inverse has a state of its own,
 /// separate from the state that follows the plant. It starts with all operators off.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
@@ -90,6 +225,7 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
     target: f64,
     heading: i32,
     tolerance: f64,
+    dt: f64,
     input: *mut f64,
     status: *mut i32,
 ) -> i32 {
@@ -102,9 +238,12 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
                 arguments.out(status, "status")?,
             )
         };
-        let target = types::target(target, heading, tolerance)?;
-        with(adaptive, |learner| {
-            let solution = learner.solve(target)?;
+        let wanted = Wanted {
+            dt: given(dt),
+            ..types::target(target, heading, tolerance)?.into()
+        };
+        LEARNERS.with(adaptive, "adaptive", &mut arguments, |learner| {
+            let solution = learner.solve(wanted)?;
             input.set(solution.input);
             status.set(status_constant(solution.status));
             Ok(())
@@ -112,23 +251,45 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
     })
 }
 
-/// Makes a model with the present weights and offset. Free it with `hysteron_model_free`.
+/// Makes a model with what was learned: with the present weights and offset, or with the present
+/// shift, which depends on no load. Free it with `hysteron_model_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let model = unsafe { Arguments::default().out(model, "model")? };
-        with(adaptive, |learner| {
+        let model = unsafe { arguments.out(model, "model")? };
+        LEARNERS.with(adaptive, "adaptive", &mut arguments, |learner| {
             model.set(MODELS.insert(learner.model()?)?);
             Ok(())
         })
     })
 }
 
-/// Switches all operators off, those of the inverse too. The weights stay.
+/// Writes the shift of a learner of `hysteron_adaptive_load_new`, and the load that it tells.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_shift(adaptive: u64, shift: *mut HysteronShift) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let shift = unsafe { arguments.out(shift, "shift")? };
+        LEARNERS.with(adaptive, "adaptive", &mut arguments, |learner| {
+            shift.set(learner.shift()?);
+            Ok(())
+        })
+    })
+}
+
+/// Switches all operators off, those of the inverse too. What was learned stays.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_reset(adaptive: u64) -> i32 {
-    guard(|| with(adaptive, |learner| Ok(learner.reset()?)))
+    guard(|| with(adaptive, |learner| learner.reset()))
+}
+
+/// Sets the state of the inverse to that of the measured input.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_align(adaptive: u64) -> i32 {
+    guard(|| with(adaptive, |learner| learner.align()))
 }
 
 /// Stops learning (`frozen` not 0), or resumes it (0).
@@ -142,19 +303,21 @@ pub extern "C" fn hysteron_adaptive_freeze(adaptive: u64, frozen: i32) -> i32 {
     })
 }
 
-/// Takes the present weights as the last good ones.
+/// Takes the present weights of a learner of `hysteron_adaptive_new` as the last good ones.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_keep(adaptive: u64) -> i32 {
-    guard(|| {
-        with(adaptive, |learner| {
-            learner.keep();
-            Ok(())
-        })
-    })
+    guard(|| with(adaptive, |learner| learner.keep()))
 }
 
-/// Returns to the last good weights.
+/// Returns to the last good weights, of a learner of `hysteron_adaptive_new`.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_roll_back(adaptive: u64) -> i32 {
-    guard(|| with(adaptive, |learner| Ok(learner.roll_back()?)))
+    guard(|| with(adaptive, |learner| learner.roll_back()))
+}
+
+fn sample(input: f64, dt: f64) -> Sample {
+    Sample {
+        dt: given(dt),
+        ..input.into()
+    }
 }

@@ -4,9 +4,10 @@ use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result, guard};
 use crate::handles::Table;
 use crate::model::MODELS;
+use crate::objects::STATES;
 use crate::pointer::Arguments;
-use crate::state::{Running, STATES};
-use crate::surroundings::given;
+use crate::state::Running;
+use crate::steps::given;
 use hysteron::{BatchModel, Surroundings};
 use std::sync::{Mutex, PoisonError};
 
@@ -193,7 +194,7 @@ pub unsafe extern "C" fn hysteron_batch_state(batch: u64, lane: usize, state: *m
             found.ok_or(Fault::Call(HYSTERON_VALUE, "lane"))
         });
         let (model, copy) = found?;
-        state.set(STATES.insert(Running::new(model, copy))?);
+        state.set(STATES.insert(Running::object(model, copy))?);
         Ok(())
     })
 }

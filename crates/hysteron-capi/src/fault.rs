@@ -7,7 +7,7 @@ use hysteron::Error;
 use hysteron_core::Error;
 use std::cell::RefCell;
 use std::ffi::CStr;
-use std::fmt;
+use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why a call failed.
@@ -48,34 +48,53 @@ impl<E: Into<Error>> From<E> for Fault {
     }
 }
 
-thread_local! {
-    static LAST: RefCell<String> = const { RefCell::new(String::new()) };
+/// The text of an error, in memory that is always there: an error allocates nothing for it. What is
+/// longer is cut off.
+struct Text {
+    bytes: [u8; 1024],
+    length: usize,
 }
 
-/// Runs a function of the form with handles. It may allocate, and an error leaves its text.
+impl Write for Text {
+    fn write_str(&mut self, more: &str) -> fmt::Result {
+        let free = &mut self.bytes[self.length..];
+        let mut length = more.len().min(free.len());
+        while !more.is_char_boundary(length) {
+            length -= 1;
+        }
+        free[..length].copy_from_slice(&more.as_bytes()[..length]);
+        self.length += length;
+        match length == more.len() {
+            true => Ok(()),
+            false => Err(fmt::Error),
+        }
+    }
+}
+
+thread_local! {
+    static LAST: RefCell<Text> = const { RefCell::new(Text { bytes: [0; 1024], length: 0 }) };
+}
+
+/// Runs a function of the interface. An error leaves its text.
 pub(crate) fn guard(work: impl FnOnce() -> Result<()>) -> i32 {
-    let (code, text) = match catch_unwind(AssertUnwindSafe(work)) {
+    let fault = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => return HYSTERON_OK,
-        Ok(Err(fault)) => (fault.code(), fault.to_string()),
-        Err(_) => (HYSTERON_INTERNAL, "the library panicked".into()),
+        Ok(Err(fault)) => fault,
+        Err(_) => Fault::Call(HYSTERON_INTERNAL, "call"),
     };
     // While a thread ends, the text cannot be kept any more.
-    let _ = LAST.try_with(|last| last.replace(text));
-    code
-}
-
-/// Runs a function of the form without allocation. An error leaves its code only.
-pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
-    match catch_unwind(AssertUnwindSafe(work)) {
-        Ok(Ok(())) => HYSTERON_OK,
-        Ok(Err(fault)) => fault.code(),
-        Err(_) => HYSTERON_INTERNAL,
-    }
+    let _ = LAST.try_with(|last| {
+        let mut last = last.borrow_mut();
+        last.length = 0;
+        write!(last, "{fault}")
+    });
+    fault.code()
 }
 
 /// Calls `read` with the text of the last error of this thread. `None` while the thread ends.
 pub(crate) fn with_last<T>(read: impl FnOnce(&str) -> T) -> Option<T> {
-    LAST.try_with(|last| read(&last.borrow())).ok()
+    let text = |last: &Text| str::from_utf8(&last.bytes[..last.length]).map(read);
+    LAST.try_with(|last| text(&last.borrow()).ok()).ok()?
 }
 
 #[cfg(test)]

@@ -16,6 +16,19 @@ struct Slots<T> {
     free: Vec<u32>,
 }
 
+impl<T> Slots<T> {
+    /// Takes an object out of its slot, whose handle is not valid from then on.
+    fn clear(&mut self, index: usize) -> Option<Arc<T>> {
+        let slot = &mut self.all[index];
+        let object = slot.object.take()?;
+        if slot.generation < LAST_GENERATION {
+            slot.generation += 1;
+            self.free.push(index as u32);
+        }
+        Some(object)
+    }
+}
+
 struct Slot<T> {
     generation: u32,
     object: Option<Arc<T>>,
@@ -64,21 +77,21 @@ impl<T> Table<T> {
     pub(crate) fn remove(&self, handle: u64, name: &'static str) -> Result<()> {
         let mut slots = self.slots.write().unwrap_or_else(PoisonError::into_inner);
         let index = self.slot(handle, name)?;
-        let slot = slots.all.get_mut(index);
-        let slot = slot.filter(|slot| slot.generation == generation(handle));
-        let Some((slot, object)) = slot.and_then(|slot| {
-            let object = slot.object.take()?;
-            Some((slot, object))
-        }) else {
-            return Err(Fault::Call(HYSTERON_HANDLE, name));
-        };
-        if slot.generation < LAST_GENERATION {
-            slot.generation += 1;
-            slots.free.push(index as u32);
-        }
+        let slot = slots.all.get(index);
+        let live = slot.is_some_and(|slot| slot.generation == generation(handle));
+        let object = if live { slots.clear(index) } else { None };
         drop(slots);
-        drop(object);
-        Ok(())
+        object.map(drop).ok_or(Fault::Call(HYSTERON_HANDLE, name))
+    }
+
+    /// Removes the objects that are `meant`.
+    pub(crate) fn end_where(&self, meant: impl Fn(&T) -> bool) {
+        let mut slots = self.slots.write().unwrap_or_else(PoisonError::into_inner);
+        for index in 0..slots.all.len() {
+            if slots.all[index].object.as_deref().is_some_and(&meant) {
+                slots.clear(index);
+            }
+        }
     }
 
     fn slot(&self, handle: u64, name: &'static str) -> Result<usize> {

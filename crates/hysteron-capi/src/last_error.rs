@@ -4,7 +4,7 @@ use crate::fault::with_last;
 use crate::pointer::Arguments;
 use std::ffi::c_char;
 
-/// The text of the last error in this thread. Functions `hysteron_core_…` leave no text.
+/// The text of the last error in this thread, up to 1023 bytes.
 ///
 /// Copies as much of it as fits into the `size` bytes of `text`, with a zero byte at the end.
 /// Returns the size of the whole text in bytes, with the zero byte. `text` may be null to ask for

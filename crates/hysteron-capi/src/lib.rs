@@ -1,10 +1,12 @@
-//! The C interface of hysteron. It has two forms: handles to objects of the library, and objects of
-//! the core in memory of the caller. The feature `fmi` adds the functions of an FMU's binary.
+//! The C interface of hysteron: handles to objects. Each state and each learner has its numbers in
+//! memory of the library (`…_new`) or of the caller (`…_place`); all other functions are the same.
+//! The feature `fmi` adds the functions of an FMU's binary.
 //!
 //! Every function that can fail returns a status: [`HYSTERON_OK`], the number of the library's
 //! error (`hysteron::Error::code`), or a number from 100 on for an error in the call itself.
 //! Results are written only with [`HYSTERON_OK`]. Counts are the exception: after an error they
-//! give the size needed. No panic leaves a function.
+//! give the size needed, and arrays of a run, which may then have zeros. No panic leaves a
+//! function.
 //!
 //! # Safety
 //! All functions have the same contract. A pointer is null, or it points to as many elements as the
@@ -20,14 +22,8 @@
 #[cfg(feature = "handles")]
 mod adaptive;
 #[cfg(feature = "handles")]
-mod adaptive_load;
-#[cfg(feature = "handles")]
 mod batch;
-#[cfg(feature = "handles")]
-mod chain;
 mod codes;
-#[cfg(feature = "handles")]
-mod estimator;
 mod fault;
 /// cbindgen:ignore
 #[cfg(feature = "fmi")]
@@ -35,62 +31,46 @@ pub mod fmi;
 mod handles;
 mod last_error;
 #[cfg(feature = "handles")]
+mod learners;
+#[cfg(feature = "handles")]
 mod limits;
 #[cfg(feature = "handles")]
 mod memory;
 #[cfg(feature = "handles")]
 mod model;
 #[cfg(feature = "handles")]
-mod parts;
+mod objects;
+#[cfg(feature = "handles")]
+mod path;
 mod pointer;
-#[cfg(feature = "handles")]
-mod room;
-#[cfg(feature = "handles")]
-mod shift;
 #[cfg(feature = "handles")]
 mod shift_options;
 #[cfg(feature = "handles")]
 mod stage_state;
 #[cfg(feature = "handles")]
-mod stages;
-#[cfg(feature = "handles")]
 mod state;
 #[cfg(feature = "handles")]
-mod surroundings;
+mod steps;
 #[cfg(feature = "handles")]
 mod types;
 
 #[cfg(feature = "handles")]
 pub use adaptive::*;
 #[cfg(feature = "handles")]
-pub use adaptive_load::*;
-#[cfg(feature = "handles")]
 pub use batch::*;
-#[cfg(feature = "handles")]
-pub use chain::*;
 pub use codes::*;
-#[cfg(feature = "handles")]
-pub use estimator::*;
 pub use last_error::hysteron_last_error;
 #[cfg(feature = "handles")]
 pub use limits::*;
 #[cfg(feature = "handles")]
-pub use memory::*;
-#[cfg(feature = "handles")]
 pub use model::*;
-#[cfg(feature = "handles")]
-pub use parts::*;
-#[cfg(feature = "handles")]
-pub use shift::*;
 #[cfg(feature = "handles")]
 pub use shift_options::*;
 #[cfg(feature = "handles")]
 pub use stage_state::*;
 #[cfg(feature = "handles")]
-pub use stages::*;
-#[cfg(feature = "handles")]
 pub use state::*;
 #[cfg(feature = "handles")]
-pub use surroundings::*;
+pub use steps::*;
 #[cfg(feature = "handles")]
 pub use types::*;

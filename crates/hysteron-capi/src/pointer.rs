@@ -8,28 +8,17 @@ use crate::fault::{Fault, Result};
 use std::ffi::{CStr, c_char};
 use std::ops::Range;
 
-/// The pointers of a function that takes no structure with lists: it has up to 14.
-pub(crate) type Arguments = Pointers<14>;
-
-/// The pointers of one call, `MOST` at most. Each is checked, and refused if it shares memory with one before it.
+/// The pointers of one call. Each is checked, and refused if it shares memory with one before it.
 ///
 /// Memory behind a pointer is reached in this way only, so that no function can forget a pair. A
 /// function takes all its pointers before it writes.
-pub(crate) struct Pointers<const MOST: usize> {
-    taken: [Range<usize>; MOST],
+#[derive(Default)]
+pub(crate) struct Arguments {
+    taken: [Range<usize>; 14],
     count: usize,
 }
 
-impl<const MOST: usize> Default for Pointers<MOST> {
-    fn default() -> Self {
-        Self {
-            taken: [const { 0..0 }; MOST],
-            count: 0,
-        }
-    }
-}
-
-impl<const MOST: usize> Pointers<MOST> {
+impl Arguments {
     /// Notes that an argument uses `bytes` bytes from `start` on.
     pub(crate) fn claim(&mut self, start: usize, bytes: usize, name: &'static str) -> Result<()> {
         let end = start.saturating_add(bytes);
@@ -65,20 +54,6 @@ impl<const MOST: usize> Pointers<MOST> {
         self.elements(pointer, 1, name)?;
         // SAFETY: the caller's promise, not null and aligned as checked.
         Ok(unsafe { pointer.read() })
-    }
-
-    /// A value that the call replaces: a copy of it, and its place.
-    ///
-    /// # Safety
-    /// As [`Arguments::value`] and [`Arguments::out`].
-    pub(crate) unsafe fn replaced<T: Copy>(
-        &mut self,
-        place: *mut T,
-        name: &'static str,
-    ) -> Result<(T, Out<T>)> {
-        // SAFETY: the caller's promise.
-        let value = unsafe { self.value(place, name)? };
-        Ok((value, Out(place)))
     }
 
     /// A place for a result.
@@ -158,17 +133,6 @@ impl<const MOST: usize> Pointers<MOST> {
     }
 }
 
-/// A text that is compared with others alone, and may share memory with anything.
-///
-/// # Safety
-/// `pointer` is null or a text that ends with a zero byte, which nobody writes during `'a`.
-pub(crate) unsafe fn name<'a>(pointer: *const c_char, what: &'static str) -> Result<&'a str> {
-    check(pointer, what)?;
-    // SAFETY: the caller's promise, and not null.
-    let text = unsafe { CStr::from_ptr(pointer) };
-    text.to_str().map_err(|_| Fault::Call(HYSTERON_TEXT, what))
-}
-
 pub(crate) fn check<T>(pointer: *const T, name: &'static str) -> Result<()> {
     if pointer.is_null() {
         return Err(Fault::Call(HYSTERON_NULL, name));
@@ -199,6 +163,7 @@ pub(crate) struct ArrayOut<T> {
 /// A number of which zero bytes are a value.
 pub(crate) trait Number: Copy {}
 impl Number for f64 {}
+impl Number for i32 {}
 
 impl<T> ArrayOut<T> {
     /// Writes one element. An index from the count on is ignored.

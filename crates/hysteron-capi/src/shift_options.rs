@@ -7,7 +7,7 @@ use hysteron::AdaptiveLoad;
 use hysteron_core::ShiftOptions;
 
 /// Options of the estimator of the shift: of a load that nobody measures.
-/// `hysteron_shift_usual` and `hysteron_core_shift_usual` write those that follow from a model.
+/// `hysteron_shift_usual` writes those that follow from a model.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronShiftOptions {
@@ -30,6 +30,19 @@ pub struct HysteronShiftOptions {
     pub gate: f64,
     /// So many refused readings in a row that agree are a jump of the load, from 1.
     pub burst: u32,
+}
+
+/// What the estimator of the shift found.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct HysteronShift {
+    /// The shift of the axis from the load that it departs from, in the unit of the temperature.
+    pub shift: f64,
+    /// Standard deviation of the shift, as the filter believes it.
+    pub deviation: f64,
+    /// The load that the shift tells. `NAN` for a model whose shift says nothing of the load.
+    /// Beyond the model's loads it is the outermost one.
+    pub load: f64,
 }
 
 impl From<ShiftOptions<f64>> for HysteronShiftOptions {

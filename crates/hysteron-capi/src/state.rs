@@ -1,44 +1,108 @@
-//! States by handle: forward, inverse, save and restore.
+//! States: made, started, saved and restored.
 
-use crate::codes::HYSTERON_VALUE;
-use crate::fault::{Fault, Result, guard};
-use crate::handles::Table;
+use crate::fault::{Result, guard};
+use crate::limits::HysteronLimits;
 use crate::model::MODELS;
+use crate::objects::{Moves, Object, STATES, Start};
+use crate::path::Path;
 use crate::pointer::Arguments;
-use crate::types::{
-    self, HYSTERON_HOLD, HYSTERON_START_FITTED, HYSTERON_START_OFF, HYSTERON_START_ON,
-    clipped as clipped_constant, heading as heading_constant, status as status_constant,
-};
-use hysteron::{Model, State, headings};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use crate::stage_state::HysteronStageState;
+use crate::types::{HYSTERON_START_OFF, HYSTERON_START_ON};
+use hysteron::{Model, Sample, State, Wanted};
+use hysteron_core::{Error, Output, STATE_NUMBERS, Solution};
+use std::ffi::c_void;
+use std::sync::Arc;
 
-/// A state, together with its model.
+/// A state in memory of the library, together with its model.
 pub(crate) struct Running {
-    pub(crate) model: Arc<Model>,
-    state: Mutex<State>,
+    model: Arc<Model>,
+    state: State,
+    kept: Option<State>,
 }
 
 impl Running {
-    pub(crate) fn new(model: Arc<Model>, state: State) -> Self {
-        let state = Mutex::new(state);
-        Self { model, state }
-    }
-
-    pub(crate) fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Moves the state by `work`. After an error it is as it was.
-    pub(crate) fn moved<T>(&self, work: impl FnOnce(&Model, &mut State) -> Result<T>) -> Result<T> {
-        let mut state = self.state();
-        let mut moved = state.clone();
-        let done = work(&self.model, &mut moved)?;
-        *state = moved;
-        Ok(done)
+    /// An object for [`STATES`].
+    pub(crate) fn object(model: Arc<Model>, state: State) -> Object<dyn Moves> {
+        let kept = None;
+        let running: Box<dyn Moves> = Box::new(Self { model, state, kept });
+        running.into()
     }
 }
 
-pub(crate) static STATES: Table<Running> = Table::new(2);
+impl Moves for Running {
+    fn model(&self) -> &Model {
+        &self.model
+    }
+
+    fn step(&mut self, sample: Sample) -> Result<Output<f64>> {
+        Ok(self.model.step(&mut self.state, sample)?)
+    }
+
+    fn run(&mut self, input: &[f64], output: &mut [f64]) -> Result<()> {
+        self.model.run(&mut self.state, input, output)?;
+        Ok(())
+    }
+
+    fn solve(&mut self, wanted: Wanted, limits: Option<HysteronLimits>) -> Result<Solution<f64>> {
+        let mut inverse = self.model.inverse()?;
+        if let Some(limits) = limits {
+            let (min, max) = limits.drive();
+            inverse = inverse.drive_range(min, max)?.horizon(limits.horizon)?;
+        }
+        Ok(inverse.step(&mut self.state, wanted)?)
+    }
+
+    fn start(&mut self, start: Start) -> Result<()> {
+        self.state = match start {
+            Start::Fitted => self.model.start(),
+            Start::Off => self.model.off(),
+            Start::On => self.model.saturated(),
+        };
+        Ok(())
+    }
+
+    fn input(&self) -> f64 {
+        self.state.input()
+    }
+
+    fn turning_points(&self, each: &mut dyn FnMut(f64)) -> usize {
+        self.state.turning_points().map(each).count()
+    }
+
+    fn restore(&mut self, turning_points: &[f64], input: f64) -> Result<()> {
+        self.state = self.model.restore(turning_points, input)?;
+        Ok(())
+    }
+
+    fn stage_numbers(&self) -> [f64; STATE_NUMBERS] {
+        self.state.stage_numbers()
+    }
+
+    fn restore_stages(&mut self, numbers: &[f64; STATE_NUMBERS]) -> Result<()> {
+        self.state = self.state.clone().with_stage_numbers(numbers)?;
+        Ok(())
+    }
+
+    fn half_width(&self) -> Result<Option<f64>> {
+        let bounds = self.model.bounds()?;
+        Ok(bounds.map(|bounds| bounds.at(&self.state)).transpose()?)
+    }
+
+    fn keep(&mut self) {
+        self.kept = Some(self.state.clone());
+    }
+
+    fn undo(&mut self) {
+        if let Some(kept) = self.kept.take() {
+            self.state = kept;
+        }
+    }
+}
+
+/// Calls `work` with a state, in a function without pointers.
+fn with<T>(state: u64, work: impl FnOnce(&mut (dyn Moves + 'static)) -> Result<T>) -> Result<T> {
+    STATES.with(state, "state", &mut Arguments::default(), work)
+}
 
 /// Makes a state of `model`, as the fit found it before the first sample, or with all operators off
 /// where it found none. The stages are at rest with the first sample. `model` may be freed
@@ -53,12 +117,51 @@ pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 
         let out = unsafe { Arguments::default().out(state, "state")? };
         let model = MODELS.get(model, "model")?;
         let state = model.start();
-        out.set(STATES.insert(Running::new(model, state))?);
+        out.set(STATES.insert(Running::object(model, state))?);
         Ok(())
     })
 }
 
-/// Frees a state.
+/// Size in bytes of the memory of a state of `model`, for `hysteron_state_place`. 0 if there is no
+/// such model.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_state_size(model: u64) -> usize {
+    MODELS
+        .get(model, "model")
+        .map_or(0, |model| Path::size(&model).bytes())
+}
+
+/// As `hysteron_state_new`, with the numbers of the state in `memory` of the caller, aligned like a
+/// `uint64_t`. Steps, runs, saving and restoring then allocate nothing, also with errors. The state
+/// has a copy of the weights.
+///
+/// The memory belongs to the state until it is freed. An older object in it ends. Errors of time
+/// and load have the codes `HYSTERON_TIME_STEP` and `HYSTERON_LOAD`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_place(
+    model: u64,
+    memory: *mut c_void,
+    bytes: usize,
+    state: *mut u64,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let (room, out) = unsafe {
+            (
+                arguments.room(memory, bytes)?,
+                arguments.out(state, "state")?,
+            )
+        };
+        let model = MODELS.get(model, "model")?;
+        let make =
+            |lent: &mut _| -> Result<Box<dyn Moves>> { Ok(Box::new(Path::new(&model, lent)?)) };
+        out.set(STATES.place(room, Path::size(&model), make)?);
+        Ok(())
+    })
+}
+
+/// Frees a state. Memory of the caller stays the caller's.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_free(state: u64) -> i32 {
     guard(|| STATES.remove(state, "state"))
@@ -68,11 +171,14 @@ pub extern "C" fn hysteron_state_free(state: u64) -> i32 {
 /// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
-    guard(|| {
-        let running = STATES.get(state, "state")?;
-        *running.state() = running.model.off();
-        Ok(())
-    })
+    hysteron_state_start(state, HYSTERON_START_OFF)
+}
+
+/// Switches all operators on, as at the top of the plane. The stages are at rest with the
+/// next sample.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
+    hysteron_state_start(state, HYSTERON_START_ON)
 }
 
 /// Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
@@ -80,188 +186,7 @@ pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
 /// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_start(state: u64, start: i32) -> i32 {
-    guard(|| {
-        let running = STATES.get(state, "state")?;
-        *running.state() = match start {
-            HYSTERON_START_FITTED => running.model.start(),
-            HYSTERON_START_OFF => running.model.off(),
-            HYSTERON_START_ON => running.model.saturated(),
-            _ => return Err(Fault::Call(HYSTERON_VALUE, "start")),
-        };
-        Ok(())
-    })
-}
-
-/// Switches all operators on, as at the top of the plane. The stages are at rest with the
-/// next sample.
-#[unsafe(no_mangle)]
-pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
-    guard(|| {
-        let running = STATES.get(state, "state")?;
-        *running.state() = running.model.saturated();
-        Ok(())
-    })
-}
-
-/// Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
-/// or `HYSTERON_HIGH` for an input of the operators outside the plane. It may be null.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_step(
-    state: u64,
-    input: f64,
-    output: *mut f64,
-    clipped: *mut i32,
-) -> i32 {
-    guard(|| {
-        let mut arguments = Arguments::default();
-        // SAFETY: the contract of the crate.
-        let (output, clipped) = unsafe {
-            (
-                arguments.out(output, "output")?,
-                arguments.optional(clipped, "clipped")?,
-            )
-        };
-        let running = STATES.get(state, "state")?;
-        let step = running.model.step(&mut running.state(), input)?;
-        output.set(step.output);
-        if let Some(clipped) = clipped {
-            clipped.set(clipped_constant(step.clipped));
-        }
-        Ok(())
-    })
-}
-
-/// Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
-/// error, as of an input that is not finite, the state stays as it is.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_run(
-    state: u64,
-    input: *const f64,
-    output: *mut f64,
-    count: usize,
-) -> i32 {
-    guard(|| {
-        let mut arguments = Arguments::default();
-        // SAFETY: the contract of the crate.
-        let (input, mut output) = unsafe {
-            (
-                arguments.array(input, count, "input")?,
-                arguments.array_out(output, count, "output")?,
-            )
-        };
-        let running = STATES.get(state, "state")?;
-        let output = output.zeros();
-        running.moved(|model, state| Ok(model.run(state, input, output).map(|_| ())?))
-    })
-}
-
-/// Finds the input that gives `target` and moves the state there. `status` becomes
-/// `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH`,
-/// `HYSTERON_PASSED` or `HYSTERON_LIMITED`.
-///
-/// `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
-/// `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
-/// `tolerance`, in the output's unit, is held.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_inverse_step(
-    state: u64,
-    target: f64,
-    heading: i32,
-    tolerance: f64,
-    input: *mut f64,
-    status: *mut i32,
-) -> i32 {
-    guard(|| {
-        let mut arguments = Arguments::default();
-        // SAFETY: the contract of the crate.
-        let (input, status) = unsafe {
-            (
-                arguments.out(input, "input")?,
-                arguments.out(status, "status")?,
-            )
-        };
-        let running = STATES.get(state, "state")?;
-        let target = types::target(target, heading, tolerance)?;
-        let inverse = running.model.inverse()?;
-        let solution = inverse.step(&mut running.state(), target)?;
-        input.set(solution.input);
-        status.set(status_constant(solution.status));
-        Ok(())
-    })
-}
-
-/// Finds the inputs for `count` targets, one after the other, and moves the state through them.
-/// `heading` has `count` elements as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD`.
-/// `status` has `count` elements, or is null. Arrays must not overlap. If a target or a heading is
-/// not valid, the state stays as it is.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_inverse_run(
-    state: u64,
-    target: *const f64,
-    heading: *const i32,
-    tolerance: f64,
-    input: *mut f64,
-    status: *mut i32,
-    count: usize,
-) -> i32 {
-    guard(|| {
-        let wanted = |is_null| if is_null { 0 } else { count };
-        let mut arguments = Arguments::default();
-        // SAFETY: the contract of the crate.
-        let (target, heading, input, status) = unsafe {
-            (
-                arguments.array(target, count, "target")?,
-                arguments.array(heading, wanted(heading.is_null()), "heading")?,
-                arguments.array_out(input, count, "input")?,
-                arguments.array_out(status, wanted(status.is_null()), "status")?,
-            )
-        };
-        let running = STATES.get(state, "state")?;
-        let headings = heading
-            .iter()
-            .copied()
-            .chain(std::iter::repeat(HYSTERON_HOLD));
-        let targets = target.iter().zip(headings);
-        let targets = targets
-            .map(|(&target, heading)| types::target(target, heading, tolerance))
-            .collect::<Result<Vec<_>>>()?;
-        let solutions =
-            running.moved(|model, state| Ok(model.inverse()?.through(state, &targets)?))?;
-        input.write(solutions.iter().map(|solution| solution.input));
-        status.write(solutions.iter().map(|s| status_constant(s.status)));
-        Ok(())
-    })
-}
-
-/// Writes where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or
-/// `HYSTERON_FALLING`, or `HYSTERON_HOLD` if the series never moves. Reversals of up to `tolerance`
-/// are noise.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_headings(
-    target: *const f64,
-    count: usize,
-    tolerance: f64,
-    heading: *mut i32,
-) -> i32 {
-    guard(|| {
-        let mut arguments = Arguments::default();
-        // SAFETY: the contract of the crate.
-        let (target, heading) = unsafe {
-            (
-                arguments.array(target, count, "target")?,
-                arguments.array_out(heading, count, "heading")?,
-            )
-        };
-        if let Some(index) = target.iter().position(|target| !target.is_finite()) {
-            return Err(hysteron_core::Error::InputNotFinite { index }.into());
-        }
-        if tolerance.is_nan() || tolerance < 0.0 {
-            return Err(Fault::Call(HYSTERON_VALUE, "tolerance"));
-        }
-        let constant = |heading: Option<_>| heading.map_or(HYSTERON_HOLD, heading_constant);
-        heading.write(headings(target, tolerance).into_iter().map(constant));
-        Ok(())
-    })
+    guard(|| with(state, |state| state.start(Start::try_from(start)?)))
 }
 
 /// Saves the state: its turning points as normalised positions, at most `capacity`, and the last
@@ -285,12 +210,21 @@ pub unsafe extern "C" fn hysteron_state_save(
                 arguments.out(input, "input")?,
             )
         };
-        let running = STATES.get(state, "state")?;
-        let state = running.state();
-        let needed = state.turning_points().count();
-        points.write_all(state.turning_points(), needed, &count)?;
-        input.set(state.input());
-        Ok(())
+        STATES.with(state, "state", &mut arguments, |state| {
+            let needed = state.turning_points(&mut |_| ());
+            count.set(needed);
+            let found = capacity;
+            if found < needed {
+                return Err(Error::MemoryTooSmall { needed, found }.into());
+            }
+            let mut n = 0;
+            state.turning_points(&mut |point| {
+                points.set(n, point);
+                n += 1;
+            });
+            input.set(state.input());
+            Ok(())
+        })
     })
 }
 
@@ -305,11 +239,63 @@ pub unsafe extern "C" fn hysteron_state_restore(
     input: f64,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let points = unsafe { Arguments::default().array(points, count, "points")? };
-        let running = STATES.get(state, "state")?;
-        *running.state() = running.model.restore(points, input)?;
-        Ok(())
+        let points = unsafe { arguments.array(points, count, "points")? };
+        STATES.with(state, "state", &mut arguments, |state| {
+            state.restore(points, input)
+        })
+    })
+}
+
+/// Saves what the stages remember. Together with `hysteron_state_save` it is the whole
+/// state. A model without stages needs it not.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_save_stages(
+    state: u64,
+    stages: *mut HysteronStageState,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let stages = unsafe { arguments.out(stages, "stages")? };
+        STATES.with(state, "state", &mut arguments, |state| {
+            stages.set(state.stage_numbers().into());
+            Ok(())
+        })
+    })
+}
+
+/// Restores, bit for bit, what `hysteron_state_save_stages` gave. Call it after
+/// `hysteron_state_restore`, which puts the stages at rest with the next sample.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_restore_stages(
+    state: u64,
+    stages: *const HysteronStageState,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate; every bit pattern is a value of each field.
+        let stages = unsafe { arguments.value(stages, "stages")? };
+        STATES.with(state, "state", &mut arguments, |state| {
+            state.restore_stages(&stages.numbers())
+        })
+    })
+}
+
+/// Writes the temperature after the last sample: the input itself for a model without a thermal
+/// body, and the bottom of the plane before the first sample.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_temperature(state: u64, temperature: *mut f64) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let temperature = unsafe { arguments.out(temperature, "temperature")? };
+        STATES.with(state, "state", &mut arguments, |state| {
+            let [started, at, ..] = state.stage_numbers();
+            temperature.set(if started == 0.0 { state.input() } else { at });
+            Ok(())
+        })
     })
 }
 
@@ -320,14 +306,12 @@ pub unsafe extern "C" fn hysteron_state_restore(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_half_width(state: u64, half_width: *mut f64) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let half_width = unsafe { Arguments::default().out(half_width, "half_width")? };
-        let running = STATES.get(state, "state")?;
-        let bounds = running.model.bounds()?;
-        let half = bounds
-            .map(|bounds| bounds.at(&running.state()))
-            .transpose()?;
-        half_width.set(half.unwrap_or(f64::NAN));
-        Ok(())
+        let half_width = unsafe { arguments.out(half_width, "half_width")? };
+        STATES.with(state, "state", &mut arguments, |state| {
+            half_width.set(state.half_width()?.unwrap_or(f64::NAN));
+            Ok(())
+        })
     })
 }

@@ -181,7 +181,7 @@ pub unsafe extern "C" fn hysteron_adaptation_default(
     method: i32,
     options: *mut HysteronAdaptation,
 ) -> i32 {
-    crate::fault::guard_plain(|| {
+    crate::fault::guard(|| {
         // SAFETY: the contract of the crate.
         let options = unsafe { crate::pointer::Arguments::default().out(options, "options")? };
         let usual = Adaptation::<f64>::default();

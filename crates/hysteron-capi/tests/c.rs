@@ -273,8 +273,16 @@ fn the_page_on_c() {
     for name in names {
         run(&mut shell(name));
     }
-    // The third one follows a load, and finds it.
+    // The third one has its state in memory of its own.
     let program = page.split("```c\n").nth(3).unwrap();
+    let program = program.split("```").next().unwrap();
+    std::fs::write(folder.path().join("spring.c"), program).unwrap();
+    run(&mut shell(commands));
+    for name in names {
+        run(&mut shell(name));
+    }
+    // The fourth one follows a load, and finds it.
+    let program = page.split("```c\n").nth(4).unwrap();
     let program = program.split("```").next().unwrap();
     std::fs::write(folder.path().join("spring.c"), program).unwrap();
     run(&mut shell(commands));

@@ -5,7 +5,7 @@
 mod signatures;
 
 use hysteron_capi::*;
-use signatures::{CALLS, Call, Handles, Model};
+use signatures::{CALLS, Call, Handles};
 use std::ffi::c_void;
 use std::ops::Range;
 
@@ -15,7 +15,6 @@ struct Arena<'a> {
     handles: &'a Handles,
     memory: Vec<u64>,
     places: Vec<Range<usize>>,
-    model: Model,
 }
 
 /// Bytes before and after each argument: at least as many as any has.
@@ -37,20 +36,14 @@ impl<'a> Arena<'a> {
             handles,
             memory,
             places,
-            model: Model::none(),
         };
         arena.prepare();
         arena
     }
 
-    /// The model first, which others are made of.
     fn prepare(&mut self) {
-        let pointers = self.pointers();
-        let mut order: Vec<usize> = (0..pointers.len()).collect();
-        order.sort_by_key(|&n| !matches!(self.call.arguments[n].1, signatures::Argument::Model));
-        for n in order {
-            let argument = self.call.arguments[n].1;
-            argument.prepare(self.handles, pointers[n], &mut self.model);
+        for (place, (_, argument)) in self.pointers().into_iter().zip(self.call.arguments) {
+            argument.prepare(self.handles, place);
         }
     }
 
@@ -97,8 +90,6 @@ impl<'a> Arena<'a> {
         match code {
             HYSTERON_OVERLAP => true,
             HYSTERON_ALIGNMENT => !start.is_multiple_of(argument.alignment()),
-            // An object is known by its beginning: there is none in the midst of something else.
-            HYSTERON_HANDLE => argument.is_object(),
             _ => false,
         }
     }
@@ -147,6 +138,28 @@ fn declared() -> Vec<(String, Vec<String>)> {
         (name.to_owned(), pointers.map(last_word).collect())
     });
     functions.collect()
+}
+
+/// An object's memory is an argument of each call that takes its handle.
+#[test]
+fn an_object_does_not_share_its_memory() {
+    let handles = Handles::new();
+    let bytes = signatures::state_size(&handles);
+    let (mut memory, mut state) = (vec![0_u64; bytes / 8], 0);
+    let at = memory.as_mut_ptr();
+    // SAFETY: live memory of the size given.
+    unsafe {
+        let made = hysteron_state_place(handles.model, at.cast(), bytes, &mut state);
+        assert_eq!(made, HYSTERON_OK);
+        let mut output = 0.0;
+        let step = |output: *mut f64| hysteron_step(state, 0.5, output, std::ptr::null_mut());
+        assert_eq!(step(&mut output), HYSTERON_OK);
+        for place in [at, at.add(bytes / 16), at.add(bytes / 8 - 1)] {
+            assert_eq!(step(place.cast()), HYSTERON_OVERLAP);
+        }
+        assert_eq!(hysteron_state_free(state), HYSTERON_OK);
+        assert_eq!(step(&mut output), HYSTERON_HANDLE);
+    }
 }
 
 #[test]

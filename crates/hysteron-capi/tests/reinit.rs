@@ -1,12 +1,12 @@
-//! Initialisation again and again in the same memory, with success and without, between other calls
-//! in any order: an object does what the same object of the core does, or it is refused.
+//! Objects made again and again in the same memory, with success and without, between other calls
+//! in any order: an object does what the same object of the library does, or it is refused.
 #![allow(clippy::unwrap_used)]
 
-use hysteron_capi::*;
-use hysteron_core::{
-    Adaptation, Error, Estimator, Inverse, Method, Model, Operator, Plane, State, Target, Turn,
-    estimator_len, operator_count, table_len, turn_capacity,
+use hysteron::{
+    Adaptation, Adaptive, CoreError, Error, Method, Model, Operator, Plane, Sign, State,
 };
+use hysteron_capi::*;
+use hysteron_core::operator_count;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use std::ptr::null_mut;
@@ -20,34 +20,19 @@ const METHODS: [i32; 3] = [
     HYSTERON_LEAST_SQUARES,
 ];
 
-/// What a room holds: the same object, made with the core.
-#[derive(Default, Clone)]
+/// What a handle stands for: the same object in the library.
 #[allow(clippy::large_enum_variant, reason = "there are four")]
 enum Twin {
-    #[default]
-    None,
-    Model(Model<f64, Vec<f64>>),
-    State(State<f64, Vec<Turn<f64>>>),
-    Estimator(Box<Estimator<f64, Vec<f64>>>),
-}
-
-impl Twin {
-    fn is_model(&self) -> bool {
-        matches!(self, Self::Model(_))
-    }
-
-    fn is_state(&self) -> bool {
-        matches!(self, Self::State(_))
-    }
-
-    fn is_estimator(&self) -> bool {
-        matches!(self, Self::Estimator(_))
-    }
+    State(Model, State),
+    Learner(Box<Adaptive>),
 }
 
 struct World {
     memory: Vec<u64>,
-    twins: [Twin; ROOMS],
+    /// The objects that live, each with its room and its handle.
+    twins: Vec<(usize, u64, Twin)>,
+    /// Handles of objects that ended.
+    ended: Vec<u64>,
     rng: StdRng,
 }
 
@@ -55,294 +40,169 @@ impl World {
     fn new(seed: u64) -> Self {
         Self {
             memory: vec![0; ROOMS * ROOM / 8],
-            twins: Default::default(),
+            twins: Vec::new(),
+            ended: Vec::new(),
             rng: StdRng::seed_from_u64(seed),
         }
-    }
-
-    fn room(&mut self) -> usize {
-        self.rng.random_range(0..ROOMS)
-    }
-
-    /// Mostly one that holds such an object, where there is one.
-    fn room_of(&mut self, wanted: fn(&Twin) -> bool) -> usize {
-        let any = self.room();
-        let mut from = (0..ROOMS).map(|n| (any + n) % ROOMS);
-        let found = from.find(|&room| wanted(&self.twins[room]));
-        if self.rng.random_ratio(1, 8) {
-            return any;
-        }
-        found.unwrap_or(any)
-    }
-
-    fn at<T>(&mut self, room: usize) -> *mut T {
-        self.memory[room * ROOM / 8..].as_mut_ptr().cast()
     }
 
     /// Mostly one that can be.
     fn number(&mut self) -> f64 {
         match self.rng.random_range(0..20) {
             0 => f64::NAN,
-            1 => -1.0,
             _ => self.rng.random_range(0.0..4.0),
         }
     }
 
-    fn weights(&mut self, levels: usize) -> Vec<f64> {
-        let number = |_| match self.rng.random_range(0..60) {
-            0 => f64::NAN,
-            _ => self.rng.random_range(0.0..1.0),
-        };
-        (0..operator_count(levels)).map(number).collect()
+    /// The end of what is in a room.
+    fn end(&mut self, room: usize) {
+        let ended = self.twins.extract_if(.., |(at, ..)| *at == room);
+        self.ended.extend(ended.map(|(_, handle, _)| handle));
     }
 
-    /// The kind of object that is found in a room; each kind's function looks for its object before
-    /// it asks for more.
-    fn found(&mut self, room: usize) -> [bool; 3] {
-        // SAFETY: null pointers, and memory as large as any object.
-        let codes = unsafe {
-            [
-                hysteron_core_state_rebase(self.at(room), null_mut()),
-                hysteron_core_state_save(self.at(room), null_mut(), 0, null_mut(), null_mut()),
-                hysteron_core_estimator_offset(self.at(room), null_mut()),
-            ]
-        };
-        codes.map(|code| match code {
-            HYSTERON_NULL => true,
-            code => {
-                assert_eq!(code, HYSTERON_HANDLE);
-                false
-            }
-        })
-    }
-
-    /// After a call that makes an object. Where it failed, the room has the object that it had, or
-    /// none.
-    fn made(&mut self, room: usize, found: i32, twin: Result<Twin, Error>) {
-        match twin {
-            Ok(twin) => {
-                assert_eq!(found, HYSTERON_OK);
-                self.twins[room] = twin;
-            }
-            Err(error) => {
-                assert_eq!(found, error.code());
-                if self.found(room) == [false; 3] {
-                    self.twins[room] = Twin::None;
-                }
-            }
-        }
-    }
-
-    fn make_model(&mut self) {
-        let (room, levels) = (self.room(), self.rng.random_range(2..5));
-        let (max, weights) = (self.number(), self.weights(levels));
-        let tables = self.rng.random_range(0..3);
-        let bytes = hysteron_core_model_size(levels, tables);
-        let (memory, mut model) = (self.at(room), null_mut());
-        let (first, count) = (weights.as_ptr(), weights.len());
+    fn make(&mut self) {
+        let (room, levels) = (self.rng.random_range(0..ROOMS), self.rng.random_range(2..5));
+        let weights: Vec<f64> = (0..operator_count(levels))
+            .map(|_| self.rng.random_range(0.0..1.0))
+            .collect();
+        let (mut handle, mut made, count) = (0, 0, weights.len());
+        let sign = if self.rng.random() { 1 } else { -1 };
+        let (kind, at) = (HYSTERON_MKP, weights.as_ptr());
         // SAFETY: live memory of the sizes given.
-        let found = unsafe {
-            let kind = HYSTERON_MKP;
-            hysteron_core_model_init(
-                memory, bytes, kind, 0.0, max, levels, first, count, &mut model,
-            )
+        let code = unsafe {
+            hysteron_model_new(kind, 0.0, 3.0, levels, at, count, 1.0, sign, &mut handle)
         };
-        let twin = || {
-            let plane = Plane::new(0.0, max, levels)?;
-            let table = vec![0.0; tables * table_len(levels)];
-            if tables == 0 {
-                let (needed, found) = (table_len(levels), 0);
-                return Err(Error::MemoryTooSmall { needed, found });
-            }
-            Ok(Twin::Model(Model::new(
-                plane,
-                Operator::Mkp,
-                &weights,
-                table,
-            )?))
-        };
-        self.made(room, found, twin());
-    }
-
-    fn make_state(&mut self) {
-        let (room, of) = (self.room(), self.room_of(Twin::is_model));
+        assert_eq!(code, HYSTERON_OK);
+        let (plane, signed) = (
+            Plane::new(0.0, 3.0, levels).unwrap(),
+            [Sign::Negative, Sign::Positive][usize::from(sign == 1)],
+        );
+        let model = Model::new(Operator::Mkp, plane, weights, 1.0, signed).unwrap();
         let short = usize::from(self.rng.random_ratio(1, 4));
-        let (memory, model, mut state) = (self.at(room), self.at(of), null_mut());
-        let Twin::Model(twin) = self.twins[of].clone() else {
-            // SAFETY: live memory of the size given.
-            let found = unsafe { hysteron_core_state_init(model, memory, ROOM, &mut state) };
-            return assert_eq!(found, HYSTERON_HANDLE);
-        };
-        let levels = twin.plane().levels();
-        let bytes = hysteron_core_state_size(levels) - short;
-        // SAFETY: live memory of the size given.
-        let found = unsafe { hysteron_core_state_init(model, memory, bytes, &mut state) };
-        if room == of {
-            return assert_eq!(found, HYSTERON_OVERLAP);
-        }
-        let turns = vec![Turn::default(); turn_capacity(levels) - short];
-        self.made(room, found, twin.state(turns).map(Twin::State));
-    }
-
-    fn make_estimator(&mut self) {
-        let (room, of) = (self.room(), self.room_of(Twin::is_model));
-        let (offset, method) = (self.number(), METHODS[self.rng.random_range(0..3)]);
+        let memory = self.memory[room * ROOM / 8..].as_mut_ptr().cast();
         // SAFETY: all fields are numbers.
-        let mut options = unsafe { std::mem::zeroed() };
-        // SAFETY: a live structure.
-        assert_eq!(
-            unsafe { hysteron_adaptation_default(method, &mut options) },
-            0
-        );
-        let levels = match &self.twins[of] {
-            Twin::Model(twin) => twin.plane().levels(),
-            _ => 2,
-        };
-        let weights = self.weights(levels);
-        let (memory, model, mut estimator) = (self.at(room), self.at(of), null_mut());
-        let (first, count) = (weights.as_ptr(), weights.len());
+        let mut options: HysteronAdaptation = unsafe { std::mem::zeroed() };
+        let method = METHODS[self.rng.random_range(0..3)];
         // SAFETY: live memory of the sizes given.
-        let found = unsafe {
-            let bytes = hysteron_core_estimator_size(levels, &options);
-            hysteron_core_estimator_init(
-                model,
-                &options,
-                first,
-                count,
-                offset,
-                memory,
-                bytes,
-                &mut estimator,
-            )
-        };
-        let Twin::Model(twin) = &mut self.twins[of] else {
-            return assert_eq!(found, HYSTERON_HANDLE);
-        };
-        if room == of {
-            return assert_eq!(found, HYSTERON_OVERLAP);
-        }
-        let method = core_method(&options);
-        let options = Adaptation {
-            method,
-            ..Adaptation::default()
-        };
-        let memory = vec![0.0; estimator_len(levels, method)];
-        let made = Estimator::new(options, twin, &weights, offset, memory);
-        self.made(
-            room,
-            found,
-            made.map(|estimator| Twin::Estimator(Box::new(estimator))),
-        );
-    }
-
-    /// A step of the model in one room, or of its inverse, with the state in another.
-    fn step(&mut self) {
-        let (of, with) = (self.room_of(Twin::is_model), self.room_of(Twin::is_state));
-        let number = self.number();
-        let (model, state) = (self.at(of), self.at(with));
-        let (mut result, mut status) = (0.0, 0);
-        let forward = self.rng.random();
-        // SAFETY: live memory, of whatever content.
-        let found = unsafe {
-            if forward {
-                hysteron_core_step(model, state, number, &mut result, null_mut())
+        let (code, twin) = unsafe {
+            assert_eq!(
+                hysteron_adaptation_default(method, &mut options),
+                HYSTERON_OK
+            );
+            if self.rng.random() {
+                let bytes = hysteron_state_size(handle) - short;
+                let code = hysteron_state_place(handle, memory, bytes, &mut made);
+                let start = model.start();
+                (code, Twin::State(model, start))
             } else {
-                let hold = HYSTERON_HOLD;
-                hysteron_core_inverse_step(
-                    model,
-                    state,
-                    number,
-                    hold,
-                    0.0,
-                    &mut result,
-                    &mut status,
-                )
+                let bytes = hysteron_adaptive_size(handle, &options) - short;
+                let code = hysteron_adaptive_place(handle, &options, memory, bytes, &mut made);
+                let learner = Adaptive::new(&model, core_options(&options)).unwrap();
+                (code, Twin::Learner(Box::new(learner)))
             }
         };
-        let (Twin::Model(model), Twin::State(mut state)) =
-            (&self.twins[of], self.twins[with].clone())
-        else {
-            return assert_eq!(found, HYSTERON_HANDLE);
-        };
-        let expected = if forward {
-            model.step(&mut state, number).map(|step| step.output)
-        } else {
-            let solve = |inverse: Inverse<'_, _, _>| inverse.step(&mut state, Target::new(number));
-            model
-                .inverse()
-                .and_then(solve)
-                .map(|solution| solution.input)
-        };
-        same(found, result, expected);
-        self.twins[with] = Twin::State(state);
+        assert_eq!(hysteron_model_free(handle), HYSTERON_OK);
+        if short == 1 {
+            // What was there stays.
+            return assert_eq!(code, HYSTERON_MEMORY_TOO_SMALL);
+        }
+        assert_eq!(code, HYSTERON_OK);
+        self.end(room);
+        self.twins.push((room, made, twin));
     }
 
-    fn learn(&mut self) {
-        let by = self.room_of(Twin::is_estimator);
-        let (of, with) = (self.room_of(Twin::is_model), self.room_of(Twin::is_state));
-        let (input, measured) = (self.number(), self.number());
-        let (estimator, model, state) = (self.at(by), self.at(of), self.at(with));
+    fn free(&mut self) {
+        let room = self.rng.random_range(0..ROOMS);
+        for (_, handle, twin) in self.twins.iter().filter(|(at, ..)| *at == room) {
+            let code = match twin {
+                Twin::State(..) => hysteron_state_free(*handle),
+                Twin::Learner(_) => hysteron_adaptive_free(*handle),
+            };
+            assert_eq!(code, HYSTERON_OK);
+        }
+        self.end(room);
+    }
+
+    fn step(&mut self) {
+        let (input, measured, way) = (self.number(), self.number(), self.rng.random_range(0..4));
+        let Some(n) = self.twins.len().checked_sub(1) else {
+            return;
+        };
+        let n = self.rng.random_range(0..=n);
+        let (_, handle, twin) = &mut self.twins[n];
+        let (mut found, mut status, handle) = (0.0, 0, *handle);
         // SAFETY: all fields are numbers.
         let mut learning: HysteronLearning = unsafe { std::mem::zeroed() };
-        // SAFETY: live memory, of whatever content.
-        let found = unsafe {
-            hysteron_core_estimator_step(estimator, model, state, input, measured, &mut learning)
+        let (nan, out, hold) = (f64::NAN, &mut found, HYSTERON_HOLD);
+        let target = hysteron::Target::new(input);
+        // SAFETY: live memory.
+        let (code, expected) = unsafe {
+            match (twin, way) {
+                (Twin::State(model, state), 0 | 1) => (
+                    hysteron_step(handle, input, out, null_mut()),
+                    model.step(state, input).map(|step| step.output),
+                ),
+                (Twin::State(model, state), _) => (
+                    hysteron_inverse_step(handle, input, hold, 0.0, out, &mut status),
+                    model
+                        .inverse()
+                        .and_then(|inverse| inverse.step(state, target))
+                        .map(|solution| solution.input),
+                ),
+                (Twin::Learner(learner), 0 | 1) => {
+                    let code = hysteron_adaptive_step(handle, input, nan, measured, &mut learning);
+                    *out = learning.output;
+                    let expected = learner.step(input, measured);
+                    (code, expected.map(|learning| learning.output))
+                }
+                (Twin::Learner(learner), 2) => (
+                    hysteron_adaptive_inverse_step(handle, input, hold, 0.0, nan, out, &mut status),
+                    learner.solve(target).map(|solution| solution.input),
+                ),
+                (Twin::Learner(learner), _) => {
+                    learner.keep();
+                    learner.roll_back().unwrap();
+                    learner.align();
+                    for call in [
+                        hysteron_adaptive_keep,
+                        hysteron_adaptive_roll_back,
+                        hysteron_adaptive_align,
+                    ] {
+                        assert_eq!(call(handle), HYSTERON_OK);
+                    }
+                    (
+                        hysteron_adaptive_simulate(handle, input, nan, out),
+                        learner.simulate(input),
+                    )
+                }
+            }
         };
-        let twins = [by, of, with].map(|room| self.twins[room].clone());
-        let [
-            Twin::Estimator(mut estimator),
-            Twin::Model(mut model),
-            Twin::State(mut state),
-        ] = twins
-        else {
-            return assert_eq!(found, HYSTERON_HANDLE);
-        };
-        let expected = estimator.step(&mut model, &mut state, input, measured);
-        same(
-            found,
-            learning.output,
-            expected.map(|learning| learning.output),
-        );
-        self.twins[by] = Twin::Estimator(estimator);
-        self.twins[of] = Twin::Model(model);
-        self.twins[with] = Twin::State(state);
+        match expected {
+            Ok(expected) => {
+                assert_eq!(code, HYSTERON_OK);
+                assert_eq!(found.to_bits(), expected.to_bits());
+            }
+            Err(Error::Core(CoreError::InputNotFinite { .. })) => {
+                assert_eq!(code, HYSTERON_INPUT_NOT_FINITE);
+            }
+            Err(error) => assert_eq!(code, error.code(), "{error}"),
+        }
     }
 
-    fn rebase(&mut self) {
-        let (of, with) = (self.room_of(Twin::is_model), self.room_of(Twin::is_state));
-        // SAFETY: live memory, of whatever content.
-        let found = unsafe { hysteron_core_state_rebase(self.at(of), self.at(with)) };
-        let (Twin::Model(model), Twin::State(mut state)) =
-            (&self.twins[of], self.twins[with].clone())
-        else {
-            return assert_eq!(found, HYSTERON_HANDLE);
-        };
-        same(found, 0.0, model.rebase(&mut state).map(|()| 0.0));
-        self.twins[with] = Twin::State(state);
-    }
-
-    fn every_room_has_its_twin(&mut self) {
-        for room in 0..ROOMS {
-            let twin = &self.twins[room];
-            let kinds = [twin.is_model(), twin.is_state(), twin.is_estimator()];
-            assert_eq!(self.found(room), kinds);
+    fn what_ended_is_refused(&self) {
+        for handle in &self.ended {
+            // SAFETY: null pointers.
+            unsafe {
+                let code = hysteron_step(*handle, 0.0, &mut 0.0, null_mut());
+                assert_eq!(code, HYSTERON_HANDLE);
+            }
+            assert_eq!(hysteron_adaptive_reset(*handle), HYSTERON_HANDLE);
         }
     }
 }
 
-/// The code of a call and its result, to the last bit, beside those of the core.
-fn same(found: i32, result: f64, expected: Result<f64, Error>) {
-    match expected {
-        Ok(expected) => {
-            assert_eq!(found, HYSTERON_OK);
-            assert_eq!(result.to_bits(), expected.to_bits());
-        }
-        Err(error) => assert_eq!(found, error.code()),
-    }
-}
-
-fn core_method(options: &HysteronAdaptation) -> Method<f64> {
-    match options.method {
+fn core_options(options: &HysteronAdaptation) -> Adaptation<f64> {
+    let method = match options.method {
         HYSTERON_GRADIENT => Method::Gradient { gain: options.gain },
         HYSTERON_INCREMENTS => Method::Increments {
             gain: options.gain,
@@ -354,23 +214,25 @@ fn core_method(options: &HysteronAdaptation) -> Method<f64> {
             spread: options.spread,
             correlation: options.correlation,
         },
+    };
+    Adaptation {
+        method,
+        ..Adaptation::default()
     }
 }
 
 #[test]
-fn an_object_works_as_in_the_core_or_is_refused() {
+fn an_object_works_as_in_the_library_or_is_refused() {
     for seed in 0..4000 {
         let mut world = World::new(seed);
         for _ in 0..200 {
             match world.rng.random_range(0..12) {
-                0..2 => world.make_model(),
-                2 => world.make_state(),
-                3 => world.make_estimator(),
-                4..8 => world.step(),
-                8..11 => world.learn(),
-                _ => world.rebase(),
+                0..2 => world.make(),
+                2 => world.free(),
+                _ => world.step(),
             }
-            world.every_room_has_its_twin();
         }
+        world.what_ended_is_refused();
+        (0..ROOMS).for_each(|room| world.end(room));
     }
 }

@@ -1,16 +1,28 @@
-//! A load that nobody measures: by handle and over the caller's memory, bit for bit what the library
-//! says.
+//! A load that nobody measures: in memory of the library and of the caller, bit for bit what the
+//! library says.
 #![allow(clippy::unwrap_used)]
 
-mod own;
 mod whole;
 
 use hysteron::{AdaptiveLoad, Model, Sample, Target, Wanted};
 use hysteron_capi::*;
-use own::{NONE, Own, ok, parsed};
+use std::ffi::CString;
 use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 use whole::{BY_LOAD, WHOLE};
+
+const NONE: f64 = f64::NAN;
+
+fn ok(code: i32) {
+    assert_eq!(code, HYSTERON_OK);
+}
+
+fn parsed(text: &str) -> u64 {
+    let (text, mut handle) = (CString::new(text).unwrap(), 0);
+    // SAFETY: live memory.
+    ok(unsafe { hysteron_model_parse(text.as_ptr(), &mut handle) });
+    handle
+}
 
 const PLAIN: &str = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
     "plane": {"min": 30.0, "max": 60.0, "levels": 3}, "weights": [1, 2, 1, 0.5, 0.25, 1]}"#;
@@ -33,15 +45,8 @@ fn shift_of(handle: u64) -> HysteronShift {
     // SAFETY: all fields are numbers.
     let mut shift: HysteronShift = unsafe { zeroed() };
     // SAFETY: live memory.
-    ok(unsafe { hysteron_adaptive_load_shift(handle, &mut shift) });
+    ok(unsafe { hysteron_adaptive_shift(handle, &mut shift) });
     shift
-}
-
-/// Two states of one model: of what is measured, and of the inverse.
-struct Twin {
-    room: Vec<u64>,
-    state: *mut HysteronCoreState,
-    past: HysteronStageState,
 }
 
 /// The plant: the model itself, shifted. Its load jumps in the middle.
@@ -49,53 +54,26 @@ fn compare(text: &str) {
     let model = Model::from_json(text).unwrap();
     let mut library = AdaptiveLoad::new(&model, None, None).unwrap();
     let handle = parsed(text);
-    let mut follower = 0;
-    // SAFETY: live memory of the sizes given.
-    ok(unsafe { hysteron_adaptive_load_new(handle, NONE, null(), &mut follower) });
-
-    let mut own = Own::new(handle);
-    let bytes = hysteron_core_state_size(3);
-    let mut twin = Twin {
-        room: vec![0; bytes / 8],
-        state: null_mut(),
-        past: HysteronStageState::default(),
-    };
-    let mut place = vec![0_u64; hysteron_core_shift_size() / 8];
-    let (mut shift, mut limits) = (null_mut(), unsafe { zeroed::<HysteronLimits>() });
-    let (mut usual, mut of_core) = unsafe { zeroed::<[HysteronShiftOptions; 2]>() }.into();
+    let bytes = hysteron_adaptive_load_size(handle);
+    let (mut memory, mut followers) = (vec![0_u64; bytes / 8], [0; 2]);
     // SAFETY: live memory of the sizes given.
     unsafe {
-        let room = twin.room.as_mut_ptr().cast();
-        ok(hysteron_core_state_init(
-            own.model,
-            room,
-            bytes,
-            &mut twin.state,
-        ));
-        let (room, bytes) = (place.as_mut_ptr().cast(), hysteron_core_shift_size());
-        ok(hysteron_core_shift_init(
-            own.model,
-            own.stages,
+        ok(hysteron_adaptive_load_new(
+            handle,
+            NONE,
             null(),
-            room,
-            bytes,
-            &mut shift,
+            &mut followers[0],
         ));
-        ok(hysteron_model_limits(handle, &mut limits));
-        ok(hysteron_shift_usual(handle, &mut usual));
-        ok(hysteron_core_shift_usual(
-            own.model,
-            own.stages,
-            &mut of_core,
+        let (memory, out) = (memory.as_mut_ptr().cast(), &mut followers[1]);
+        ok(hysteron_adaptive_load_place(
+            handle,
+            NONE,
+            null(),
+            memory,
+            bytes,
+            out,
         ));
     }
-    assert_eq!(
-        (usual.noise, usual.reach, usual.burst),
-        (of_core.noise, of_core.reach, of_core.burst)
-    );
-
-    let told = library.told();
-    let load = told.unwrap_or(NONE);
     let body = model.thermal.is_some();
     let mut plant = model.start();
     let mut learned = 0;
@@ -143,27 +121,9 @@ fn compare(text: &str) {
         let expected = library.step(sample, measured).unwrap();
         // SAFETY: all fields are numbers.
         let mut found: [HysteronLearning; 2] = unsafe { zeroed() };
-        // SAFETY: live memory.
-        unsafe {
-            ok(hysteron_adaptive_load_step(
-                follower,
-                input,
-                dt,
-                measured,
-                &mut found[0],
-            ));
-            ok(hysteron_core_shift_step(
-                shift,
-                own.stages,
-                own.model,
-                own.state,
-                &mut own.past,
-                input,
-                dt,
-                load,
-                measured,
-                &mut found[1],
-            ));
+        for (follower, found) in followers.iter().zip(&mut found) {
+            // SAFETY: live memory.
+            ok(unsafe { hysteron_adaptive_step(*follower, input, dt, measured, found) });
         }
         for found in found {
             let bits = (found.output.to_bits(), found.error.to_bits());
@@ -174,11 +134,7 @@ fn compare(text: &str) {
             );
             learned += i32::from(found.outcome == HYSTERON_LEARNED);
         }
-        // SAFETY: all fields are numbers.
-        let mut read: HysteronShift = unsafe { zeroed() };
-        // SAFETY: live memory.
-        ok(unsafe { hysteron_core_shift_read(shift, own.stages, load, &mut read) });
-        for found in [shift_of(follower), read] {
+        for found in followers.map(shift_of) {
             assert_eq!(found.shift.to_bits(), library.shift().to_bits(), "{n}");
             assert_eq!(found.deviation.to_bits(), library.deviation().to_bits());
             assert_eq!((!found.load.is_nan()).then_some(found.load), library.load());
@@ -191,44 +147,51 @@ fn compare(text: &str) {
         };
         let solution = library.solve(wanted).unwrap();
         let (mut input, mut status) = ([7.0; 2], [7; 2]);
-        // SAFETY: live memory.
-        unsafe {
-            ok(hysteron_adaptive_load_inverse_step(
-                follower,
-                target,
-                HYSTERON_HOLD,
-                0.0,
-                dt,
-                &mut input[0],
-                &mut status[0],
-            ));
-            ok(hysteron_core_shift_inverse_step(
-                shift,
-                own.stages,
-                own.model,
-                twin.state,
-                &mut twin.past,
-                target,
-                HYSTERON_HOLD,
-                0.0,
-                dt,
-                load,
-                &limits,
-                &mut input[1],
-                &mut status[1],
-            ));
+        for (n, follower) in followers.into_iter().enumerate() {
+            let (input, status) = (&mut input[n], &mut status[n]);
+            // SAFETY: live memory.
+            ok(unsafe {
+                hysteron_adaptive_inverse_step(
+                    follower,
+                    target,
+                    HYSTERON_HOLD,
+                    0.0,
+                    dt,
+                    input,
+                    status,
+                )
+            });
         }
         for (input, status) in input.into_iter().zip(status) {
             assert_eq!(input.to_bits(), solution.input.to_bits(), "{n}");
             assert_eq!(status, i32::from(solution.status.number()));
         }
+        if n % 97 == 50 {
+            library.align();
+            followers
+                .iter()
+                .for_each(|follower| ok(hysteron_adaptive_align(*follower)));
+        }
     }
     assert!(learned > 40, "{learned} of 1200 taught something");
-    let mut at = 0;
-    // SAFETY: live memory.
-    ok(unsafe { hysteron_adaptive_load_model(follower, &mut at) });
-    ok(hysteron_model_free(at));
-    ok(hysteron_adaptive_load_free(follower));
+    let expected = library.model().unwrap();
+    for follower in followers {
+        // SAFETY: all fields are numbers.
+        let (mut at, mut info) = (0, unsafe { zeroed::<HysteronModelInfo>() });
+        // SAFETY: live memory.
+        unsafe {
+            ok(hysteron_adaptive_model(follower, &mut at));
+            ok(hysteron_model_info(at, &mut info));
+        }
+        assert_eq!(
+            (info.min, info.max),
+            (expected.plane().min(), expected.plane().max())
+        );
+        assert_eq!((info.output_off, info.output_on), expected.output_range());
+        assert_eq!(hysteron_adaptive_keep(follower), HYSTERON_HANDLE);
+        ok(hysteron_model_free(at));
+        ok(hysteron_adaptive_free(follower));
+    }
 }
 
 #[test]
@@ -272,15 +235,14 @@ fn what_is_wrong_is_refused_and_nothing_changes() {
         ));
         let before = shift_of(follower);
         let mut learning = zeroed();
-        let mut step =
-            |input, dt, y| hysteron_adaptive_load_step(follower, input, dt, y, &mut learning);
+        let mut step = |input, dt, y| hysteron_adaptive_step(follower, input, dt, y, &mut learning);
         ok(step(0.5, NONE, 1.0));
         assert_eq!(step(0.5, -1.0, 1.0), HYSTERON_THERMAL);
         assert_eq!(step(NONE, 0.1, 1.0), HYSTERON_INPUT_NOT_FINITE);
         assert_eq!(step(0.5, 0.1, NONE), HYSTERON_INPUT_NOT_FINITE);
         assert_eq!(shift_of(follower).shift, before.shift);
-        ok(hysteron_adaptive_load_freeze(follower, 1));
-        ok(hysteron_adaptive_load_step(
+        ok(hysteron_adaptive_freeze(follower, 1));
+        ok(hysteron_adaptive_step(
             follower,
             0.2,
             9.0,
@@ -288,47 +250,29 @@ fn what_is_wrong_is_refused_and_nothing_changes() {
             &mut learning,
         ));
         assert_eq!(learning.outcome, HYSTERON_FROZEN);
-        ok(hysteron_adaptive_load_align(follower));
-        ok(hysteron_adaptive_load_reset(follower));
+        ok(hysteron_adaptive_align(follower));
+        ok(hysteron_adaptive_reset(follower));
         let mut output = 0.0;
-        ok(hysteron_adaptive_load_simulate(
-            follower,
-            0.4,
-            NONE,
-            &mut output,
-        ));
-        ok(hysteron_adaptive_load_free(follower));
-        assert_eq!(hysteron_adaptive_load_free(follower), HYSTERON_HANDLE);
+        ok(hysteron_adaptive_simulate(follower, 0.4, NONE, &mut output));
+        ok(hysteron_adaptive_free(follower));
+        assert_eq!(hysteron_adaptive_free(follower), HYSTERON_HANDLE);
         assert_eq!(
-            hysteron_adaptive_load_model(follower, &mut model),
+            hysteron_adaptive_model(follower, &mut model),
             HYSTERON_HANDLE
         );
     }
-
-    let own = Own::new(handle);
-    let mut room = vec![0_u64; hysteron_core_shift_size() / 8];
-    let (place, bytes) = (room.as_mut_ptr().cast(), hysteron_core_shift_size());
-    let mut shift = null_mut();
+    let bytes = hysteron_adaptive_load_size(handle);
+    let (mut room, mut made) = (vec![0_u64; bytes / 8], 0);
+    let memory = room.as_mut_ptr().cast();
     // SAFETY: live memory of the sizes given.
     unsafe {
-        let init = |bytes, shift| {
-            hysteron_core_shift_init(own.model, own.stages, null(), place, bytes, shift)
+        let mut place = |load, bytes| {
+            hysteron_adaptive_load_place(handle, load, null(), memory, bytes, &mut made)
         };
-        assert_eq!(init(bytes - 1, &mut shift), HYSTERON_MEMORY_TOO_SMALL);
-        ok(init(bytes, &mut shift));
-        ok(hysteron_core_shift_freeze(shift, 1));
-        assert_eq!(
-            hysteron_core_shift_reset(shift, NONE),
-            HYSTERON_INPUT_NOT_FINITE
-        );
-        ok(hysteron_core_shift_reset(shift, 4.0));
-        let mut found = zeroed();
-        ok(hysteron_core_shift_read(
-            shift, own.stages, 100.0, &mut found,
-        ));
-        assert_eq!(found.shift, 4.0);
-        assert!(found.load > 100.0);
-        let code = hysteron_core_shift_read(shift, own.stages, NONE, &mut found);
-        assert_eq!(code, HYSTERON_LOAD);
+        assert_eq!(place(NONE, bytes - 1), HYSTERON_MEMORY_TOO_SMALL);
+        assert_eq!(place(1e6, bytes), HYSTERON_FIT);
+        ok(place(NONE, bytes));
     }
+    ok(hysteron_adaptive_free(made));
+    assert_eq!(hysteron_adaptive_load_size(0), 0);
 }

@@ -1,5 +1,5 @@
-//! The whole model through C: bit for bit what the library gives, by handle and over the caller's
-//! memory.
+//! The whole model through C: bit for bit what the library gives, in memory of the library and of
+//! the caller.
 #![allow(clippy::unwrap_used)]
 
 mod whole;
@@ -21,8 +21,24 @@ fn ok(code: i32) {
     assert_eq!(code, HYSTERON_OK, "{text:?}");
 }
 
+/// Whose memory a state is in: the library's, or the caller's.
+const WHOSE: [Whose; 2] = [Whose::Library, Whose::Caller];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Whose {
+    Library,
+    Caller,
+}
+
+fn cases() -> impl Iterator<Item = (&'static str, Whose)> {
+    let texts = [WHOLE, BY_LOAD].into_iter();
+    texts.flat_map(|text| WHOSE.map(|whose| (text, whose)))
+}
+
 /// Handles of a model and of a state of it, and the same in the library.
 struct Both {
+    whose: Whose,
+    memory: Vec<u64>,
     handle: u64,
     state: u64,
     model: Model,
@@ -30,21 +46,42 @@ struct Both {
 }
 
 impl Both {
-    fn new(text: &str) -> Self {
+    fn new(text: &str, whose: Whose) -> Self {
         let model = Model::from_json(text).unwrap();
         let text = CString::new(text).unwrap();
-        let (mut handle, mut state) = (0, 0);
+        let mut handle = 0;
         // SAFETY: live memory.
-        unsafe {
-            ok(hysteron_model_parse(text.as_ptr(), &mut handle));
-            ok(hysteron_state_new(handle, &mut state));
-        }
-        let own = model.start();
-        Self {
+        ok(unsafe { hysteron_model_parse(text.as_ptr(), &mut handle) });
+        let mut both = Self {
+            whose,
+            memory: vec![0; hysteron_state_size(handle) / 8],
             handle,
-            state,
+            state: 0,
+            own: model.start(),
             model,
-            own,
+        };
+        both.make();
+        both
+    }
+
+    /// Makes the state, whose memory the one before leaves.
+    fn make(&mut self) {
+        let (memory, bytes) = (self.memory.as_mut_ptr().cast(), 8 * self.memory.len());
+        // SAFETY: live memory of the size given.
+        ok(unsafe {
+            match self.whose {
+                Whose::Library => hysteron_state_new(self.handle, &mut self.state),
+                Whose::Caller => hysteron_state_place(self.handle, memory, bytes, &mut self.state),
+            }
+        });
+    }
+
+    /// The code of an error of the library; over memory of the caller, that of the core.
+    fn code(&self, code: i32) -> i32 {
+        match (self.whose, code) {
+            (Whose::Caller, HYSTERON_THERMAL) => HYSTERON_TIME_STEP,
+            (Whose::Caller, HYSTERON_FIT) => HYSTERON_LOAD,
+            _ => code,
         }
     }
 
@@ -109,8 +146,8 @@ fn same(a: &[f64], b: &[f64]) {
 
 #[test]
 fn steps_are_those_of_the_library() {
-    for text in [WHOLE, BY_LOAD] {
-        let mut both = Both::new(text);
+    for (text, whose) in cases() {
+        let mut both = Both::new(text, whose);
         let Series {
             input, load, step, ..
         } = series(1, 500);
@@ -122,8 +159,8 @@ fn steps_are_those_of_the_library() {
 
 #[test]
 fn runs_are_those_of_the_library_at_once_and_in_pieces() {
-    for text in [WHOLE, BY_LOAD] {
-        let both = Both::new(text);
+    for (text, whose) in cases() {
+        let both = Both::new(text, whose);
         let Series {
             input,
             load,
@@ -180,8 +217,8 @@ fn runs_are_those_of_the_library_at_once_and_in_pieces() {
 
 #[test]
 fn the_inverse_is_that_of_the_library() {
-    for text in [WHOLE, BY_LOAD] {
-        let mut both = Both::new(text);
+    for (text, whose) in cases() {
+        let mut both = Both::new(text, whose);
         let Series {
             target,
             load,
@@ -273,8 +310,8 @@ fn the_inverse_is_that_of_the_library() {
 
 #[test]
 fn a_state_saved_and_restored_goes_on_to_the_last_bit() {
-    for text in [WHOLE, BY_LOAD] {
-        let (mut whole, mut broken) = (Both::new(text), Both::new(text));
+    for (text, whose) in cases() {
+        let (mut whole, mut broken) = (Both::new(text, Whose::Library), Both::new(text, whose));
         let Series {
             input, load, step, ..
         } = series(4, 300);
@@ -300,7 +337,7 @@ fn a_state_saved_and_restored_goes_on_to_the_last_bit() {
                     ));
                     ok(hysteron_state_save_stages(broken.state, &mut stages));
                     ok(hysteron_state_free(broken.state));
-                    ok(hysteron_state_new(broken.handle, &mut broken.state));
+                    broken.make();
                     ok(hysteron_state_restore(
                         broken.state,
                         points.as_ptr(),
@@ -320,36 +357,38 @@ fn a_state_saved_and_restored_goes_on_to_the_last_bit() {
 
 #[test]
 fn a_state_starts_as_told() {
-    let both = Both::new(WHOLE);
-    for (start, state) in [
-        (HYSTERON_START_FITTED, both.model.fitted().unwrap()),
-        (HYSTERON_START_OFF, both.model.off()),
-        (HYSTERON_START_ON, both.model.saturated()),
-    ] {
-        both.probe();
-        ok(hysteron_state_start(both.state, start));
-        let (input, load) = (0.37, Some(77.0));
-        let sample = Sample {
-            input,
-            dt: None,
-            load,
-        };
-        let expected = both.model.step(&mut state.clone(), sample).unwrap().output;
-        assert_eq!(both.probe().to_bits(), expected.to_bits());
+    for whose in WHOSE {
+        let both = Both::new(WHOLE, whose);
+        for (start, state) in [
+            (HYSTERON_START_FITTED, both.model.fitted().unwrap()),
+            (HYSTERON_START_OFF, both.model.off()),
+            (HYSTERON_START_ON, both.model.saturated()),
+        ] {
+            both.probe();
+            ok(hysteron_state_start(both.state, start));
+            let (input, load) = (0.37, Some(77.0));
+            let sample = Sample {
+                input,
+                dt: None,
+                load,
+            };
+            let expected = both.model.step(&mut state.clone(), sample).unwrap().output;
+            assert_eq!(both.probe().to_bits(), expected.to_bits());
+        }
+        for (reset, start) in [
+            (
+                hysteron_state_reset as extern "C" fn(u64) -> i32,
+                HYSTERON_START_OFF,
+            ),
+            (hysteron_state_saturate, HYSTERON_START_ON),
+        ] {
+            ok(reset(both.state));
+            let found = both.probe();
+            ok(hysteron_state_start(both.state, start));
+            assert_eq!(both.probe().to_bits(), found.to_bits());
+        }
+        assert_eq!(hysteron_state_start(both.state, 3), HYSTERON_VALUE);
     }
-    for (reset, start) in [
-        (
-            hysteron_state_reset as extern "C" fn(u64) -> i32,
-            HYSTERON_START_OFF,
-        ),
-        (hysteron_state_saturate, HYSTERON_START_ON),
-    ] {
-        ok(reset(both.state));
-        let found = both.probe();
-        ok(hysteron_state_start(both.state, start));
-        assert_eq!(both.probe().to_bits(), found.to_bits());
-    }
-    assert_eq!(hysteron_state_start(both.state, 3), HYSTERON_VALUE);
 }
 
 #[test]
@@ -361,7 +400,7 @@ fn a_model_says_what_it_needs() {
         ok(unsafe { hysteron_model_needs(both.handle, &mut needs) });
         needs
     };
-    let both = Both::new(WHOLE);
+    let both = Both::new(WHOLE, Whose::Library);
     let found = needs(&both);
     assert_eq!(
         [found.time, found.load, found.body, found.fitted_start],
@@ -384,7 +423,7 @@ fn a_model_says_what_it_needs() {
 
     let plain = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
         "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2, 1]}"#;
-    let found = needs(&Both::new(plain));
+    let found = needs(&Both::new(plain, Whose::Library));
     assert_eq!(
         [found.time, found.load, found.body, found.fitted_start],
         [0; 4]
@@ -399,7 +438,12 @@ fn a_model_says_what_it_needs() {
 
 #[test]
 fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
-    let (both, twin) = (Both::new(WHOLE), Both::new(WHOLE));
+    WHOSE.into_iter().for_each(refuses);
+}
+
+fn refuses(whose: Whose) {
+    let (both, twin) = (Both::new(WHOLE, whose), Both::new(WHOLE, whose));
+    let (thermal, fit) = (both.code(HYSTERON_THERMAL), both.code(HYSTERON_FIT));
     let step = |input, dt, load| {
         let mut output = 7.0;
         // SAFETY: live memory.
@@ -429,12 +473,8 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
         code
     };
     let inf = f64::INFINITY;
-    assert_eq!(
-        step(0.5, -1.0, 100.0),
-        HYSTERON_THERMAL,
-        "even for the first sample"
-    );
-    assert_eq!(step(0.5, NONE, NONE), HYSTERON_FIT);
+    assert_eq!(step(0.5, -1.0, 100.0), thermal, "even for the first sample");
+    assert_eq!(step(0.5, NONE, NONE), fit);
     for state in [both.state, twin.state] {
         // SAFETY: live memory.
         ok(unsafe { hysteron_step_in(state, 0.5, NONE, 100.0, &mut 0.0, null_mut()) });
@@ -442,12 +482,12 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
     for (input, dt, load, code) in [
         (NONE, 0.1, 100.0, HYSTERON_INPUT_NOT_FINITE),
         (inf, 0.1, 100.0, HYSTERON_INPUT_NOT_FINITE),
-        (0.5, NONE, 100.0, HYSTERON_THERMAL),
-        (0.5, -0.1, 100.0, HYSTERON_THERMAL),
-        (0.5, inf, 100.0, HYSTERON_THERMAL),
-        (0.5, 0.1, NONE, HYSTERON_FIT),
-        (0.5, 0.1, 20.0, HYSTERON_FIT),
-        (0.5, 0.1, 203.0, HYSTERON_FIT),
+        (0.5, NONE, 100.0, thermal),
+        (0.5, -0.1, 100.0, thermal),
+        (0.5, inf, 100.0, thermal),
+        (0.5, 0.1, NONE, fit),
+        (0.5, 0.1, 20.0, fit),
+        (0.5, 0.1, 203.0, fit),
     ] {
         assert_eq!(step(input, dt, load), code, "{input} {dt} {load}");
         assert_eq!(
@@ -456,7 +496,7 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
             "{input} {dt} {load}"
         );
     }
-    assert_eq!(step(0.5, 0.1, inf), HYSTERON_FIT);
+    assert_eq!(step(0.5, 0.1, inf), fit);
     let wrong: [&dyn Fn(&mut HysteronLimits); 9] = [
         &|l| l.drive_min = NONE,
         &|l| l.drive_max = NONE,
@@ -478,12 +518,12 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
         let inputs = [0.1, 0.2];
         assert_eq!(
             hysteron_step(both.state, 0.5, output.as_mut_ptr(), null_mut()),
-            HYSTERON_THERMAL
+            thermal
         );
         let code = hysteron_run(both.state, inputs.as_ptr(), output.as_mut_ptr(), 2);
-        assert_eq!(code, HYSTERON_THERMAL);
+        assert_eq!(code, thermal);
         let code = hysteron_inverse_step(both.state, 1.0, 0, 0.0, &mut input, &mut status);
-        assert_eq!(code, HYSTERON_THERMAL);
+        assert_eq!(code, thermal);
         // An error in the midst of a series: no part of it counts.
         let (time, back, load) = ([1.0, 2.0], [2.0, 1.0], [100.0, 100.0]);
         let (outside, bad) = ([100.0, 300.0], [0.1, NONE]);
@@ -501,24 +541,12 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
             assert!(output.iter().all(|y| *y == 0.0 || *y == 7.0));
             code
         };
-        assert_eq!(
-            run(&inputs, back.as_ptr(), 0.5, load.as_ptr()),
-            HYSTERON_THERMAL
-        );
-        assert_eq!(
-            run(&inputs, time.as_ptr(), 3.0, load.as_ptr()),
-            HYSTERON_THERMAL
-        );
-        assert_eq!(
-            run(&inputs, time.as_ptr(), NONE, load.as_ptr()),
-            HYSTERON_THERMAL
-        );
-        assert_eq!(run(&inputs, null(), 0.5, load.as_ptr()), HYSTERON_THERMAL);
-        assert_eq!(run(&inputs, time.as_ptr(), 0.5, null()), HYSTERON_FIT);
-        assert_eq!(
-            run(&inputs, time.as_ptr(), 0.5, outside.as_ptr()),
-            HYSTERON_FIT
-        );
+        assert_eq!(run(&inputs, back.as_ptr(), 0.5, load.as_ptr()), thermal);
+        assert_eq!(run(&inputs, time.as_ptr(), 3.0, load.as_ptr()), thermal);
+        assert_eq!(run(&inputs, time.as_ptr(), NONE, load.as_ptr()), thermal);
+        assert_eq!(run(&inputs, null(), 0.5, load.as_ptr()), thermal);
+        assert_eq!(run(&inputs, time.as_ptr(), 0.5, null()), fit);
+        assert_eq!(run(&inputs, time.as_ptr(), 0.5, outside.as_ptr()), fit);
         assert_eq!(
             run(&bad, time.as_ptr(), 0.5, load.as_ptr()),
             HYSTERON_INPUT_NOT_FINITE
@@ -538,14 +566,8 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
                 2,
             )
         };
-        assert_eq!(
-            inverse(&inputs, back.as_ptr(), load.as_ptr()),
-            HYSTERON_THERMAL
-        );
-        assert_eq!(
-            inverse(&inputs, time.as_ptr(), outside.as_ptr()),
-            HYSTERON_FIT
-        );
+        assert_eq!(inverse(&inputs, back.as_ptr(), load.as_ptr()), thermal);
+        assert_eq!(inverse(&inputs, time.as_ptr(), outside.as_ptr()), fit);
         assert_eq!(
             inverse(&bad, time.as_ptr(), load.as_ptr()),
             HYSTERON_INPUT_NOT_FINITE
@@ -570,8 +592,9 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
     let plain = Both::new(
         r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
         "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2, 1]}"#,
+        whose,
     );
     // SAFETY: live memory.
     let code = unsafe { hysteron_step_in(plain.state, 0.5, NONE, 1.0, &mut 0.0, null_mut()) };
-    assert_eq!(code, HYSTERON_FIT, "a load that the model does not have");
+    assert_eq!(code, fit, "a load that the model does not have");
 }

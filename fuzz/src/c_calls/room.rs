@@ -88,16 +88,12 @@ impl Room {
         let bytes = 8 * slot
             .words
             .map_or(WORDS - 1, |words| usize::from(words) % WORDS);
-        (self.object(slot), bytes)
-    }
-
-    /// Where the object of a slot is, if one was ever made there.
-    pub fn object<T>(&mut self, slot: Slot) -> *mut T {
         let first = self.slots[usize::from(slot.which) % 4].as_mut_ptr();
-        match slot.kind {
+        let at = match slot.kind {
             SlotKind::Usual | SlotKind::AlsoUsual => first.cast(),
             SlotKind::Askew => first.cast::<u8>().wrapping_add(1).cast(),
             SlotKind::Null => std::ptr::null_mut(),
-        }
+        };
+        (at, bytes)
     }
 }

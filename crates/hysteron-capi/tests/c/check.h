@@ -28,7 +28,7 @@ static inline void *room(size_t bytes) {
 }
 
 void vector_run(const char *model_file, const char *run_file);
-void vector_stages(const char *model_file, FILE *file);
+void vector_stages(uint64_t model, uint64_t state, FILE *file);
 void handles(void);
 void batches(void);
 void memory_form(void);

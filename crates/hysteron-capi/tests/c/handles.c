@@ -84,21 +84,21 @@ static void adaptation(uint64_t model, uint64_t plant_model, int32_t method) {
     OK(hysteron_state_new(plant_model, &plant));
     for (n = 0; n < 20000; n++) {
         OK(hysteron_step(plant, wave(n), &measured, NULL));
-        OK(hysteron_adaptive_step(adaptive, wave(n), measured, &learning));
+        OK(hysteron_adaptive_step(adaptive, wave(n), NAN, measured, &learning));
         error = n < 19000 ? 0.0 : fmax(error, fabs(learning.error));
     }
     REQUIRE(error < 0.1); /* 2.1 before it learned */
 
     OK(hysteron_adaptive_keep(adaptive));
     OK(hysteron_adaptive_freeze(adaptive, 1));
-    OK(hysteron_adaptive_step(adaptive, 60.0, 1000.0, &learning));
+    OK(hysteron_adaptive_step(adaptive, 60.0, NAN, 1000.0, &learning));
     REQUIRE(learning.outcome == HYSTERON_FROZEN);
     OK(hysteron_adaptive_freeze(adaptive, 0));
     OK(hysteron_adaptive_roll_back(adaptive));
     OK(hysteron_adaptive_reset(adaptive));
-    OK(hysteron_adaptive_inverse_step(adaptive, 12.0, HYSTERON_HOLD, 0.0, &input, &status));
+    OK(hysteron_adaptive_inverse_step(adaptive, 12.0, HYSTERON_HOLD, 0.0, NAN, &input, &status));
     REQUIRE(status == HYSTERON_INSIDE);
-    OK(hysteron_adaptive_simulate(adaptive, input, &expected));
+    OK(hysteron_adaptive_simulate(adaptive, input, NAN, &expected));
     REQUIRE(fabs(expected - 12.0) < 1e-9);
 
     OK(hysteron_adaptive_model(adaptive, &now));

@@ -1,4 +1,4 @@
-/* The form over the caller's memory. */
+/* Objects in memory of the caller. */
 #include "check.h"
 #include <math.h>
 #include <string.h>
@@ -6,108 +6,89 @@
 #define LEVELS 3
 static const double WEIGHTS[6] = {1.0, 0.5, 1.0, 0.25, 0.5, 1.0};
 
-static void learns(int32_t method) {
+static void learns(uint64_t model, uint64_t plant_model, int32_t method) {
     struct HysteronAdaptation options;
     struct HysteronLearning learning;
-    struct HysteronCoreModel *model, *plant;
-    struct HysteronCoreState *state, *there, *ahead;
-    struct HysteronCoreEstimator *estimator;
-    size_t model_bytes = hysteron_core_model_size(LEVELS, 2), state_bytes = hysteron_core_state_size(LEVELS);
-    size_t estimator_bytes;
-    void *memory[6];
-    double measured, offset, input, start[6], error = 0.0;
+    uint64_t plant, adaptive, now;
+    size_t bytes;
+    void *memory;
+    double measured, input, error = 0.0;
     int32_t status;
     int n;
-    for (n = 0; n < 6; n++) {
-        start[n] = 0.7 * WEIGHTS[n];
-    }
     OK(hysteron_adaptation_default(method, &options));
-    estimator_bytes = hysteron_core_estimator_size(LEVELS, &options);
-    for (n = 0; n < 6; n++) {
-        memory[n] = room(n < 2 ? model_bytes : n < 5 ? state_bytes : estimator_bytes);
-    }
-    OK(hysteron_core_model_init(memory[0], model_bytes, HYSTERON_MKP, 20.0, 80.0, LEVELS, start, 6, &model));
-    OK(hysteron_core_model_init(memory[1], model_bytes, HYSTERON_MKP, 20.0, 80.0, LEVELS, WEIGHTS, 6, &plant));
-    OK(hysteron_core_state_init(model, memory[2], state_bytes, &state));
-    OK(hysteron_core_state_init(plant, memory[3], state_bytes, &there));
-    OK(hysteron_core_state_init(model, memory[4], state_bytes, &ahead));
-    OK(hysteron_core_estimator_init(model, &options, start, 6, 0.0, memory[5], estimator_bytes, &estimator));
+    bytes = hysteron_adaptive_size(model, &options);
+    memory = room(bytes);
+    OK(hysteron_adaptive_place(model, &options, memory, bytes, &adaptive));
+    OK(hysteron_state_new(plant_model, &plant));
     for (n = 0; n < 20000; n++) {
         input = 50.0 - 45.0 * cos(0.07 * n) * cos(0.011 * n);
-        OK(hysteron_core_step(plant, there, input, &measured, NULL));
-        OK(hysteron_core_estimator_step(estimator, model, state, input, measured, &learning));
+        OK(hysteron_step(plant, input, &measured, NULL));
+        OK(hysteron_adaptive_step(adaptive, input, NAN, measured, &learning));
         error = n < 19000 ? 0.0 : fmax(error, fabs(learning.error));
     }
     REQUIRE(error < 0.1); /* 1.3 before it learned */
-    OK(hysteron_core_estimator_offset(estimator, &offset));
-    REQUIRE(isfinite(offset));
-    OK(hysteron_core_estimator_freeze(estimator, 1));
-    OK(hysteron_core_estimator_step(estimator, model, state, 30.0, 1000.0, &learning));
+    OK(hysteron_adaptive_freeze(adaptive, 1));
+    OK(hysteron_adaptive_step(adaptive, 30.0, NAN, 1000.0, &learning));
     REQUIRE(learning.outcome == HYSTERON_FROZEN);
-
-    /* A state from before the weights changed is refused, until it is brought up to date. */
-    REQUIRE(hysteron_core_inverse_step(model, ahead, 2.0, HYSTERON_HOLD, 0.0, &input, &status) == HYSTERON_STATE_MISMATCH);
-    OK(hysteron_core_state_rebase(model, ahead));
-    OK(hysteron_core_inverse_step(model, ahead, 2.0, HYSTERON_HOLD, 0.0, &input, &status));
+    OK(hysteron_adaptive_inverse_step(adaptive, 2.0, HYSTERON_HOLD, 0.0, NAN, &input, &status));
     REQUIRE(status == HYSTERON_INSIDE);
-    for (n = 0; n < 6; n++) {
-        free(memory[n]);
-    }
+    OK(hysteron_adaptive_model(adaptive, &now));
+    OK(hysteron_model_free(now));
+    OK(hysteron_adaptive_free(adaptive));
+    OK(hysteron_state_free(plant));
+    free(memory);
 }
 
-static void save_and_restore(void) {
-    struct HysteronCoreModel *model;
-    struct HysteronCoreState *state, *other;
-    size_t model_bytes = hysteron_core_model_size(LEVELS, 1), state_bytes = hysteron_core_state_size(LEVELS), count;
-    void *memory[3];
+static void save_and_restore(uint64_t model) {
+    size_t bytes = hysteron_state_size(model), count;
+    void *memory[2];
+    uint64_t state, other, again;
     double points[32], input, a, b;
-    memory[0] = room(model_bytes);
-    memory[1] = room(state_bytes);
-    memory[2] = room(state_bytes);
-    OK(hysteron_core_model_init(memory[0], model_bytes, HYSTERON_KP, 20.0, 80.0, LEVELS, WEIGHTS, 6, &model));
-    OK(hysteron_core_state_init(model, memory[1], state_bytes, &state));
-    OK(hysteron_core_state_init(model, memory[2], state_bytes, &other));
-    OK(hysteron_core_step(model, state, 70.0, &a, NULL));
-    OK(hysteron_core_step(model, state, 35.0, &a, NULL));
-    REQUIRE(hysteron_core_state_save(state, points, 1, &count, &input) == HYSTERON_MEMORY_TOO_SMALL);
+    memory[0] = room(bytes);
+    memory[1] = room(bytes);
+    OK(hysteron_state_place(model, memory[0], bytes, &state));
+    OK(hysteron_state_place(model, memory[1], bytes, &other));
+    OK(hysteron_step(state, 70.0, &a, NULL));
+    OK(hysteron_step(state, 35.0, &a, NULL));
+    REQUIRE(hysteron_state_save(state, points, 1, &count, &input) == HYSTERON_MEMORY_TOO_SMALL);
     REQUIRE(count == 2);
-    OK(hysteron_core_state_save(state, points, 32, &count, &input));
-    OK(hysteron_core_state_restore(model, other, points, count, input));
-    OK(hysteron_core_step(model, state, 60.0, &a, NULL));
-    OK(hysteron_core_step(model, other, 60.0, &b, NULL));
+    OK(hysteron_state_save(state, points, 32, &count, &input));
+    OK(hysteron_state_restore(other, points, count, input));
+    OK(hysteron_step(state, 60.0, &a, NULL));
+    OK(hysteron_step(other, 60.0, &b, NULL));
     REQUIRE(memcmp(&a, &b, sizeof a) == 0);
 
-    /* A state of another model. */
-    {
-        static const double larger[10] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-        struct HysteronCoreModel *foreign;
-        size_t bytes = hysteron_core_model_size(4, 1);
-        void *place = room(bytes);
-        OK(hysteron_core_model_init(place, bytes, HYSTERON_KP, 20.0, 80.0, 4, larger, 10, &foreign));
-        REQUIRE(hysteron_core_step(foreign, state, 60.0, &a, NULL) == HYSTERON_STATE_MISMATCH);
-        free(place);
-    }
-
-    /* Too little, nothing, not an object, not in its place. */
-    REQUIRE(hysteron_core_state_init(model, memory[2], state_bytes - 1, &other) == HYSTERON_MEMORY_TOO_SMALL);
-    REQUIRE(hysteron_core_state_init(model, NULL, state_bytes, &other) == HYSTERON_NULL);
-    REQUIRE(hysteron_core_state_init(model, (char *)memory[2] + 1, state_bytes - 1, &other) == HYSTERON_ALIGNMENT);
-    REQUIRE(hysteron_core_step(NULL, state, 60.0, &a, NULL) == HYSTERON_NULL);
-    memset(memory[2], 0, state_bytes);
-    REQUIRE(hysteron_core_step(model, memory[2], 60.0, &a, NULL) == HYSTERON_HANDLE);
-    REQUIRE(hysteron_core_step(model, state, NAN, &a, NULL) == HYSTERON_INPUT_NOT_FINITE);
-    REQUIRE(hysteron_core_run(model, state, points, points, 2) == HYSTERON_OVERLAP);
-    REQUIRE(hysteron_core_model_size(1, 1) == 0 && hysteron_core_model_size((size_t)-1, 1) == 0);
-    REQUIRE(hysteron_core_model_size(LEVELS, 3) == 0 && hysteron_core_state_size(0) == 0);
-    REQUIRE(hysteron_core_estimator_size(LEVELS, NULL) == 0);
+    /* Too little, nothing, not in its place, in the midst of another object. */
+    REQUIRE(hysteron_state_place(model, memory[1], bytes - 1, &again) == HYSTERON_MEMORY_TOO_SMALL);
+    REQUIRE(hysteron_state_place(model, NULL, bytes, &again) == HYSTERON_NULL);
+    REQUIRE(hysteron_state_place(model, (char *)memory[1] + 1, bytes - 1, &again) == HYSTERON_ALIGNMENT);
+    REQUIRE(hysteron_state_place(state, memory[1], bytes, &again) == HYSTERON_HANDLE);
+    REQUIRE(hysteron_state_size(state) == 0 && hysteron_adaptive_size(0, NULL) == 0);
+    REQUIRE(hysteron_step(state, 60.0, memory[0], NULL) == HYSTERON_OVERLAP);
+    OK(hysteron_step(other, 61.0, &b, NULL)); /* as it was */
+    OK(hysteron_state_place(model, memory[1], bytes, &again));
+    REQUIRE(hysteron_step(other, 62.0, &b, NULL) == HYSTERON_HANDLE); /* its memory was taken */
+    OK(hysteron_state_free(again));
+    REQUIRE(hysteron_state_free(again) == HYSTERON_HANDLE);
+    REQUIRE(hysteron_step(state, NAN, &a, NULL) == HYSTERON_INPUT_NOT_FINITE);
+    OK(hysteron_state_free(state));
     free(memory[0]);
     free(memory[1]);
-    free(memory[2]);
 }
 
 void memory_form(void) {
-    save_and_restore();
-    learns(HYSTERON_GRADIENT);
-    learns(HYSTERON_INCREMENTS);
-    learns(HYSTERON_LEAST_SQUARES);
+    double softer[6];
+    uint64_t model, plant;
+    int n;
+    for (n = 0; n < 6; n++) {
+        softer[n] = 0.7 * WEIGHTS[n];
+    }
+    OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, LEVELS, softer, 6, 0.0, 1, &model));
+    OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, LEVELS, WEIGHTS, 6, 0.0, 1, &plant));
+    save_and_restore(model);
+    learns(model, plant, HYSTERON_GRADIENT);
+    learns(model, plant, HYSTERON_INCREMENTS);
+    learns(model, plant, HYSTERON_LEAST_SQUARES);
+    OK(hysteron_model_free(model));
+    OK(hysteron_model_free(plant));
 }

@@ -1,4 +1,4 @@
-/* A model with every stage: by handle and over own memory, forward and inverse, saved and restored. */
+/* A model with every stage: forward and inverse, saved and restored. */
 #include "check.h"
 #include <math.h>
 #include <string.h>
@@ -85,64 +85,6 @@ static void save_and_restore(uint64_t model) {
     OK(hysteron_state_free(broken));
 }
 
-/* The same path in memory of this program. */
-static void over_own_memory(uint64_t model) {
-    struct HysteronModelInfo info;
-    struct HysteronStages constants;
-    struct HysteronStageState past;
-    struct HysteronCoreModel *operators;
-    struct HysteronCoreState *state;
-    struct HysteronCoreStages *stages;
-    double weights[6], a, b, wrong = -1.0;
-    size_t bytes, found;
-    void *memory[3];
-    uint64_t by_handle;
-    int32_t status, other;
-    int n;
-    OK(hysteron_model_info(model, &info));
-    OK(hysteron_model_weights(model, weights, 6, &found));
-    OK(hysteron_model_stages(model, &constants));
-    bytes = hysteron_core_model_size(info.levels, 1);
-    memory[0] = room(bytes);
-    OK(hysteron_core_model_init(memory[0], bytes, info.operator_kind, info.min, info.max, info.levels, weights, found,
-                                &operators));
-    bytes = hysteron_core_state_size(info.levels);
-    memory[1] = room(bytes);
-    OK(hysteron_core_state_init(operators, memory[1], bytes, &state));
-    bytes = hysteron_core_stages_size(&constants);
-    memory[2] = room(bytes);
-    OK(hysteron_core_stages_init(operators, &constants, memory[2], bytes, &stages));
-    memset(&past, 0, sizeof past);
-    OK(hysteron_state_new(model, &by_handle));
-    for (n = 0; n < COUNT; n++) {
-        struct HysteronLimits limits = {0.0, 1.0, 0.0, -INFINITY, INFINITY};
-        if (n % 3 == 0) {
-            OK(hysteron_inverse_step_in(by_handle, target[n], HYSTERON_HOLD, 0.0, 0.1, load[n], NULL, &a, &status));
-            OK(hysteron_core_stages_inverse_step(stages, operators, state, &past, target[n], HYSTERON_HOLD, 0.0, 0.1,
-                                                 load[n], &limits, &b, &other));
-            REQUIRE(status == other);
-        } else {
-            OK(hysteron_step_in(by_handle, drive[n], 0.1, load[n], &a, &status));
-            OK(hysteron_core_stages_step(stages, operators, state, &past, drive[n], 0.1, load[n], &b, &other));
-            REQUIRE(status == other);
-        }
-        REQUIRE(memcmp(&a, &b, sizeof a) == 0);
-    }
-    REQUIRE(hysteron_core_stages_step(stages, operators, state, &past, 0.5, NAN, 100.0, &b, NULL) == HYSTERON_TIME_STEP);
-    REQUIRE(hysteron_core_stages_step(stages, operators, state, &past, 0.5, 0.1, NAN, &b, NULL) == HYSTERON_LOAD);
-    REQUIRE(hysteron_core_stages_step(stages, operators, state, NULL, 0.5, 0.1, 100.0, &b, NULL) == HYSTERON_NULL);
-    for (n = 0; constants.constants[n].name != NULL; n++) {
-        if (strcmp(constants.constants[n].name, "lag") == 0) {
-            constants.constants[n].numbers = &wrong;
-        }
-    }
-    REQUIRE(hysteron_core_stages_init(operators, &constants, memory[2], bytes, &stages) == HYSTERON_STAGE);
-    OK(hysteron_state_free(by_handle));
-    for (n = 0; n < 3; n++) {
-        free(memory[n]);
-    }
-}
-
 static void refusals(uint64_t model) {
     struct HysteronLimits limits = {1.0, 0.0, 0.0, -INFINITY, INFINITY};
     uint64_t state;
@@ -180,7 +122,6 @@ void stages(void) {
     REQUIRE(needs.load_min == 50.0 && needs.load_max == 200.0 && needs.drive_max == 1.0);
     inverse_and_back(model);
     save_and_restore(model);
-    over_own_memory(model);
     refusals(model);
     OK(hysteron_model_free(model));
 }

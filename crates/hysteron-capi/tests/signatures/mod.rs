@@ -5,7 +5,6 @@ mod calls;
 pub use calls::CALLS;
 use hysteron_capi::*;
 use std::ffi::{CStr, c_void};
-use std::ptr::null_mut;
 
 pub const LEVELS: usize = 2;
 pub const WEIGHTS: [f64; 3] = [1.0, 2.0, 1.0];
@@ -36,24 +35,14 @@ pub enum Argument {
     /// The handle of a model, to read.
     ModelHandle,
     Options,
-    Learning,
-    /// Limits of the inverse, what stages remember, and constants of stages without arrays.
     Limits,
-    StageState,
-    Constants,
     /// The path of a model file, and its text.
     Path,
     Json,
-    /// The objects over the caller's memory, and memory for one.
-    Model,
-    State,
-    Estimator,
-    Stages,
-    Shift,
-    /// Options of the estimator of the shift, and what it found.
+    /// Options of the estimator of the shift.
     ShiftOptions,
-    Found,
-    Memory(fn() -> usize),
+    /// Memory for an object.
+    Memory(fn(&Handles) -> usize),
 }
 
 /// What calls need beside pointers.
@@ -63,7 +52,6 @@ pub struct Handles {
     pub state: u64,
     pub loaded: u64,
     pub adaptive: u64,
-    pub follower: u64,
     pub batch: u64,
     pub plain_batch: u64,
 }
@@ -73,7 +61,7 @@ impl Handles {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("model.json"), MODEL_TEXT).unwrap();
         let (mut model, mut state, mut adaptive) = (0, 0, 0);
-        let (mut other, mut loaded, mut follower) = (0, 0, 0);
+        let (mut other, mut loaded) = (0, 0);
         let (mut batch, mut plain_batch) = (0, 0);
         let count = WEIGHTS.len();
         // SAFETY: live memory of the sizes given.
@@ -94,19 +82,17 @@ impl Handles {
                 hysteron_adaptive_new(model, std::ptr::null(), &mut adaptive),
                 hysteron_model_parse(LOADED_TEXT.as_ptr(), &mut other),
                 hysteron_state_new(other, &mut loaded),
-                hysteron_adaptive_load_new(model, f64::NAN, std::ptr::null(), &mut follower),
                 hysteron_batch_of(other, 3, &mut batch),
                 hysteron_batch_of(model, 3, &mut plain_batch),
             ]
         };
-        assert_eq!(made, [HYSTERON_OK; 8]);
+        assert_eq!(made, [HYSTERON_OK; 7]);
         Self {
             folder,
             model,
             state,
             loaded,
             adaptive,
-            follower,
             batch,
             plain_batch,
         }
@@ -140,21 +126,17 @@ pub fn shift_options() -> HysteronShiftOptions {
     }
 }
 
-pub fn shift_size() -> usize {
-    hysteron_core_shift_size()
+pub fn state_size(handles: &Handles) -> usize {
+    hysteron_state_size(handles.model)
 }
 
-pub fn model_size() -> usize {
-    hysteron_core_model_size(LEVELS, 1)
-}
-
-pub fn state_size() -> usize {
-    hysteron_core_state_size(LEVELS)
-}
-
-pub fn estimator_size() -> usize {
+pub fn adaptive_size(handles: &Handles) -> usize {
     // SAFETY: a live structure.
-    unsafe { hysteron_core_estimator_size(LEVELS, &options()) }
+    unsafe { hysteron_adaptive_size(handles.model, &options()) }
+}
+
+pub fn adaptive_load_size(handles: &Handles) -> usize {
+    hysteron_adaptive_load_size(handles.model)
 }
 
 const LIMITS: HysteronLimits = HysteronLimits {
@@ -165,26 +147,6 @@ const LIMITS: HysteronLimits = HysteronLimits {
     temperature_max: f64::INFINITY,
 };
 
-static LAG: f64 = 0.5;
-
-/// A model with a lag.
-pub fn constants() -> HysteronStages {
-    // SAFETY: all fields are numbers, or pointers that may be null.
-    let mut constants: HysteronStages = unsafe { std::mem::zeroed() };
-    constants.sign = 1;
-    constants.constants[0] = HysteronConstant {
-        name: c"lag".as_ptr(),
-        numbers: &LAG,
-        count: 1,
-    };
-    constants
-}
-
-pub fn stages_size() -> usize {
-    // SAFETY: a live structure.
-    unsafe { hysteron_core_stages_size(&constants()) }
-}
-
 impl Argument {
     pub fn bytes(self, handles: &Handles) -> usize {
         match self {
@@ -193,19 +155,10 @@ impl Argument {
             Self::Characters(count) => count,
             Self::Word | Self::ModelHandle => size_of::<u64>(),
             Self::Options => size_of::<HysteronAdaptation>(),
-            Self::Learning => size_of::<HysteronLearning>(),
             Self::Limits => size_of::<HysteronLimits>(),
-            Self::StageState => size_of::<HysteronStageState>(),
-            Self::Constants => size_of::<HysteronStages>(),
             Self::Path | Self::Json => self.text(handles).map_or(0, |text| text.len()),
-            Self::Model => model_size(),
-            Self::State => state_size(),
-            Self::Estimator => estimator_size(),
-            Self::Stages => stages_size(),
-            Self::Shift => shift_size(),
             Self::ShiftOptions => size_of::<HysteronShiftOptions>(),
-            Self::Found => size_of::<HysteronShift>(),
-            Self::Memory(bytes) => bytes(),
+            Self::Memory(bytes) => bytes(handles),
         }
     }
 
@@ -217,13 +170,6 @@ impl Argument {
         }
     }
 
-    pub fn is_object(self) -> bool {
-        matches!(
-            self,
-            Self::Model | Self::State | Self::Estimator | Self::Stages | Self::Shift
-        )
-    }
-
     /// A text with its zero byte.
     pub fn text(self, handles: &Handles) -> Option<String> {
         match self {
@@ -233,8 +179,8 @@ impl Argument {
         }
     }
 
-    /// Puts it in its place. `model` becomes the model that a state or an estimator is one of.
-    pub fn prepare(self, handles: &Handles, place: *mut c_void, model: &mut Model) {
+    /// Puts it in its place.
+    pub fn prepare(self, handles: &Handles, place: *mut c_void) {
         if let Some(text) = self.text(handles) {
             // SAFETY: the place has room for it.
             unsafe { place.cast::<u8>().copy_from(text.as_ptr(), text.len()) };
@@ -251,106 +197,10 @@ impl Argument {
             // SAFETY: the place has room for it.
             Self::Limits => unsafe { place.cast::<HysteronLimits>().write(LIMITS) },
             // SAFETY: the place has room for it.
-            Self::Constants => unsafe { place.cast::<HysteronStages>().write(constants()) },
-            // SAFETY: the place has room for it.
             Self::ShiftOptions => unsafe {
                 place.cast::<HysteronShiftOptions>().write(shift_options());
             },
-            Self::Shift => core_shift(model.get(), place),
-            Self::Stages => core_stages(model.get(), place),
-            Self::Model => model.0 = core_model(place),
-            Self::State => core_state(model.get(), place),
-            Self::Estimator => core_estimator(model.get(), place),
             _ => {}
         }
     }
-}
-
-/// The model of a call, or one of its own for a call that has none.
-pub struct Model(*mut HysteronCoreModel, Vec<u64>);
-
-impl Model {
-    pub fn none() -> Self {
-        Self(null_mut(), vec![0; model_size().div_ceil(8)])
-    }
-
-    fn get(&mut self) -> *mut HysteronCoreModel {
-        if self.0.is_null() {
-            self.0 = core_model(self.1.as_mut_ptr().cast());
-        }
-        self.0
-    }
-}
-
-fn core_model(place: *mut c_void) -> *mut HysteronCoreModel {
-    let mut model = null_mut();
-    let (weights, count, kind) = (WEIGHTS.as_ptr(), WEIGHTS.len(), HYSTERON_MKP);
-    // SAFETY: the place has the size asked for.
-    let made = unsafe {
-        hysteron_core_model_init(
-            place,
-            model_size(),
-            kind,
-            0.0,
-            1.0,
-            LEVELS,
-            weights,
-            count,
-            &mut model,
-        )
-    };
-    assert_eq!(made, HYSTERON_OK);
-    model
-}
-
-fn core_state(model: *mut HysteronCoreModel, place: *mut c_void) {
-    let mut state = null_mut();
-    // SAFETY: the place has the size asked for.
-    let made = unsafe { hysteron_core_state_init(model, place, state_size(), &mut state) };
-    assert_eq!(made, HYSTERON_OK);
-}
-
-fn core_estimator(model: *mut HysteronCoreModel, place: *mut c_void) {
-    let mut estimator = null_mut();
-    let (weights, count, bytes) = (WEIGHTS.as_ptr(), WEIGHTS.len(), estimator_size());
-    // SAFETY: the place has the size asked for.
-    let made = unsafe {
-        hysteron_core_estimator_init(
-            model,
-            &options(),
-            weights,
-            count,
-            0.0,
-            place,
-            bytes,
-            &mut estimator,
-        )
-    };
-    assert_eq!(made, HYSTERON_OK);
-}
-
-fn core_stages(model: *mut HysteronCoreModel, place: *mut c_void) {
-    let mut stages = null_mut();
-    let (constants, bytes) = (constants(), stages_size());
-    // SAFETY: the place has the size asked for.
-    let made = unsafe { hysteron_core_stages_init(model, &constants, place, bytes, &mut stages) };
-    assert_eq!(made, HYSTERON_OK);
-}
-
-fn core_shift(model: *mut HysteronCoreModel, place: *mut c_void) {
-    let mut room = vec![0_u64; stages_size().div_ceil(8)];
-    core_stages(model, room.as_mut_ptr().cast());
-    let mut shift = null_mut();
-    // SAFETY: the place has the size asked for.
-    let made = unsafe {
-        hysteron_core_shift_init(
-            model,
-            room.as_ptr().cast(),
-            &shift_options(),
-            place,
-            shift_size(),
-            &mut shift,
-        )
-    };
-    assert_eq!(made, HYSTERON_OK);
 }

@@ -31,9 +31,17 @@ impl Model {
     /// If the model's curve of shifts tells a load there, it is the model at that load. What lies
     /// beyond the curve is a shift alone.
     ///
+    /// ```
+    /// # use hysteron::{Model, Operator, Plane, Sign};
+    /// let plane = Plane::new(20.0, 80.0, 3)?;
+    /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+    /// assert_eq!(model.shifted(None, 8.0)?.plane().min(), 28.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Model::at_load`].
-    pub(crate) fn shifted(&self, given: Option<f64>, shift: f64) -> Result<Self> {
+    pub fn shifted(&self, given: Option<f64>, shift: f64) -> Result<Self> {
         let (Some(dependence), Some(given)) = (&self.load, given) else {
             return self.moved(shift);
         };
