@@ -2,7 +2,9 @@
 
 use crate::error::Result;
 use crate::identify::history::find_start;
-use crate::model::{Model, Start};
+use crate::identify::options::FitOptions;
+use crate::identify::rest::after;
+use crate::model::{Model, Start, Surroundings};
 use crate::recording::Recording;
 use crate::series::Errors;
 use serde_json::json;
@@ -16,12 +18,22 @@ use std::collections::HashSet;
 ///
 /// # Errors
 /// As [`Model::run_in`].
-pub(super) fn with_start(model: Model, recordings: &[Recording], start: Start) -> Result<Model> {
-    match start {
+pub(super) fn with_start(
+    model: Model,
+    recordings: &[Recording],
+    options: &FitOptions,
+) -> Result<Model> {
+    match options.start {
         Start::Off | Start::Fitted => return model.with_start(None),
         Start::On => {
             let on = model.saturated();
             return model.starting_from(&on);
+        }
+        Start::Rest => {
+            let rest = options.rest.unwrap_or_default();
+            let seen = model.seen(&rest, Surroundings::default())?;
+            let rested = after(&model, &seen)?;
+            return model.starting_from(&rested);
         }
         Start::Unknown => {}
     }

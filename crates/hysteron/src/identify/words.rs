@@ -192,6 +192,7 @@ impl Fit<'_> {
             ("start", "auto") => self.start(Auto),
             ("start", "off") => self.start(Start::Off),
             ("start", "on") => self.start(Start::On),
+            ("start", "rest") => self.start(Start::Rest),
             ("start", "unknown") => self.start(Start::Unknown),
             ("load_law", "shift") => self.load_law(LoadLaw::Shift),
             ("load_law", "weights") => self.load_law(LoadLaw::Weights),

@@ -118,8 +118,8 @@ fn with_inputs(recordings: &[Recording], input: impl Fn(&Recording) -> Vec<f64>)
     recordings.iter().map(with).collect()
 }
 
-/// The inputs of a recording on the uniform grid of the plane.
-fn on_grid(spacing: &[f64], plane: &Plane, recording: &Recording) -> Vec<f64> {
+/// The uniform grid of the plane: where an input is on it.
+fn on_grid<'a>(spacing: &'a [f64], plane: &'a Plane) -> impl Fn(f64) -> f64 + 'a {
     let axis = Axis {
         spacing,
         ..Axis::PLAIN
@@ -130,13 +130,12 @@ fn on_grid(spacing: &[f64], plane: &Plane, recording: &Recording) -> Vec<f64> {
         gain: 1.0,
         offset: 0.0,
     };
-    let inputs = recording.input.iter();
-    inputs.map(|t| axis.forward(plane, unloaded, *t)).collect()
+    move |t| axis.forward(plane, unloaded, t)
 }
 
 /// Keeps of each run of `stride` samples the first one and those with extreme inputs. Without the
 /// extremes the turning points would change, and with them the memory of the operators.
-fn thin(recording: Recording, stride: usize) -> Recording {
+pub(crate) fn thin(recording: Recording, stride: usize) -> Recording {
     let input = &recording.input;
     let starts = (0..input.len()).step_by(stride);
     let mut kept: Vec<usize> = starts
