@@ -4,7 +4,8 @@ use crate::error::Result;
 use crate::identify::history::find_start;
 use crate::identify::options::FitOptions;
 use crate::identify::rest::after;
-use crate::model::{Model, Start, Surroundings};
+use crate::identify::stages::on_grid;
+use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::Errors;
 use serde_json::json;
@@ -30,10 +31,17 @@ pub(super) fn with_start(
             return model.starting_from(&on);
         }
         Start::Rest => {
-            let rest = options.rest.unwrap_or_default();
-            let seen = model.seen(&rest, Surroundings::default())?;
+            let inputs = options.rest.unwrap_or_default();
+            let seen = inputs.map(on_grid(model.spacing(), model.plane()));
             let rested = after(&model, &seen)?;
-            return model.starting_from(&rested);
+            let mut model = match rested == model.off() {
+                true => model.with_start(None)?,
+                false => model.starting_from(&rested)?,
+            };
+            if let Some(fit) = &mut model.fit {
+                fit.other.insert("rest".into(), json!(inputs));
+            }
+            return Ok(model);
         }
         Start::Unknown => {}
     }

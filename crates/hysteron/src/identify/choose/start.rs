@@ -57,9 +57,7 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Fit
         },
     );
     let (known, free) = (tried(&rest)?, tried(&unknown)?);
-    let better = free
-        .criterion
-        .is_worth(free.value(), known.value(), WORTH);
+    let better = free.criterion.is_worth(free.value(), known.value(), WORTH);
     Ok(if better { unknown } else { rest })
 }
 

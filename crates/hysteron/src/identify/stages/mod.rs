@@ -119,7 +119,7 @@ fn with_inputs(recordings: &[Recording], input: impl Fn(&Recording) -> Vec<f64>)
 }
 
 /// The uniform grid of the plane: where an input is on it.
-fn on_grid<'a>(spacing: &'a [f64], plane: &'a Plane) -> impl Fn(f64) -> f64 + 'a {
+pub(crate) fn on_grid<'a>(spacing: &'a [f64], plane: &'a Plane) -> impl Fn(f64) -> f64 + 'a {
     let axis = Axis {
         spacing,
         ..Axis::PLAIN

@@ -1,6 +1,5 @@
 //! A column of the regressor.
 
-
 /// An operator that is multiplied by a function of the load, from one start in each recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Column {

@@ -465,8 +465,9 @@ impl Regressor {
                 let first = part * self.form.operators() + operator;
                 let (mut on, mut descent) = (0, -slopes[first]);
                 for (s, products) in all.iter().enumerate() {
-                    let [off, started_on] =
-                        self.initials().map(|from| products.of(part, from, operator));
+                    let [off, started_on] = self
+                        .initials()
+                        .map(|from| products.of(part, from, operator));
                     let open = self.open[operator] >> s & 1 == 1;
                     on |= u64::from(open && started_on > off) << s;
                     descent += if open { off.max(started_on) } else { off };
