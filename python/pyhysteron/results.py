@@ -391,7 +391,7 @@ class FitSummary(_Result):
     solver: Literal["nnls", "ols"]
     smooth: Smooth
     ridge: float
-    start: Literal["off", "on", "unknown"]
+    start: Literal["off", "on", "rest", "unknown"]
     open_at_start: int
     samples: int
     rmse: float

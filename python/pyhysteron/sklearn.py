@@ -98,7 +98,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         smooth: float | tuple[float, float] | Literal["auto"] = "auto",
         ridge: float = 1e-6,
         robust: bool = True,
-        start: Literal["auto", "off", "on", "unknown"] = "auto",
+        start: Literal["auto", "off", "on", "rest", "unknown"] = "auto",
         sign: Literal[1, -1] | None = None,
         offset: float | None = None,
         bootstrap: int = 0,

@@ -380,6 +380,17 @@ fn prior_line(fit: &FitSummary) -> Option<String> {
 
 /// The start that was found; what the weights alone would fit, where that says more.
 fn start_line(fit: &FitSummary) -> Option<String> {
+    if let Some(rest) = fit.other.get("rest") {
+        let [first, second] = [0, 1].map(|n| rest.get(n).and_then(|x| x.as_f64()));
+        let (first, second) = (first.map(text::number)?, second.map(text::number)?);
+        let at = match first == second {
+            true => first,
+            false => format!("{first}, then {second}"),
+        };
+        return Some(format!(
+            "start: all off, then at rest at an input of {at}, then the first input; kept in the model"
+        ));
+    }
     let found = fit.other.get("start_found")?;
     let free = found.get("free_nrmse_percent")?.as_f64()?;
     Some(format!(

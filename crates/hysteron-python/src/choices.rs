@@ -103,10 +103,11 @@ pub(crate) const POLICIES: [(&str, Policy); 2] =
     [("hold", Policy::Hold), ("anticipate", Policy::Anticipate)];
 
 /// Where the operators of a model stand before the first sample.
-pub(crate) const STARTS: [(&str, Start); 4] = [
+pub(crate) const STARTS: [(&str, Start); 5] = [
     ("fitted", Start::Fitted),
     ("off", Start::Off),
     ("on", Start::On),
+    ("rest", Start::Rest),
     ("unknown", Start::Unknown),
 ];
 

@@ -226,7 +226,7 @@ pub(crate) fn left_out<'py>(
     let recordings = recordings_of(recording, output, time, load)?;
     let found = with_progress(py, progress, |progress| {
         if auto.start {
-            options.start = hysteron::usual_start(recordings.as_ref(), &options)?;
+            options = hysteron::usual_start(recordings.as_ref(), &options)?;
         }
         hysteron::left_out(recordings.as_ref(), &options, candidates.as_ref(), progress)
     })?;

@@ -7,7 +7,7 @@ import { colour } from "./plot.js";
 const FIRST = ["levels", "smooth", "spacing", "start"];
 /** Options that are one of a few words. */
 const WORDS = /** @type {Record<string, string[]>} */ ({
-  spacing: ["auto", "uniform"], start: ["auto", "off", "on", "unknown"], operator: ["mkp", "kp", "relay"], solver: ["nnls", "ols"],
+  spacing: ["auto", "uniform"], start: ["auto", "off", "on", "rest", "unknown"], operator: ["mkp", "kp", "relay"], solver: ["nnls", "ols"],
   sign: ["", "positive", "negative"], robust: ["auto", "off"], load_law: ["shift", "weights"], thermal: ["", "first-order"],
 });
 

@@ -15,7 +15,7 @@ def loops(
     recording: Recording,
     model: Model | None = None,
     *,
-    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
+    start: Literal["fitted", "off", "on", "rest", "unknown"] = "fitted",
     ax: Axes | None = None,
 ) -> Axes:
     """Output over input, measured and modelled (Figs. 1 and 11).

@@ -17,7 +17,7 @@ def over_time(
     model: Model,
     *,
     of: Literal["output", "input"] = "output",
-    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
+    start: Literal["fitted", "off", "on", "rest", "unknown"] = "fitted",
     axes: Any = None,
 ) -> NDArray[Any]:
     """Measured and modelled series over time, with the discrepancy below (Figs. 10 and 12, or 13 and 14).
@@ -130,7 +130,7 @@ def dead_band(
     recording: Recording,
     model: Model,
     *,
-    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
+    start: Literal["fitted", "off", "on", "rest", "unknown"] = "fitted",
     axes: Any = None,
 ) -> NDArray[Any]:
     """The dead band with the largest error of the inverse, close up (Fig. 15).

@@ -57,7 +57,7 @@ pub(crate) struct FitHow {
     /// no weight
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) robust: Robust,
-    /// State of the operators before the first sample; `auto` takes off or on, unless an unknown
+    /// State of the operators before the first sample; `auto` takes a rest, unless an unknown
     /// start predicts clearly better
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) start: FitStart,

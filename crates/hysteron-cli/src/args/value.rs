@@ -31,12 +31,14 @@ pub(crate) enum Solver {
 /// The start of a fit.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum FitStart {
-    /// Off or on, unless an unknown start predicts clearly better
+    /// At rest, unless an unknown start predicts clearly better
     Auto,
     /// All off, as after the lowest input
     Off,
     /// All on, as after the highest input
     On,
+    /// All off, then at rest at an input that is found
+    Rest,
     /// Not known: estimated together with the weights
     Unknown,
 }
@@ -47,6 +49,7 @@ impl From<FitStart> for hysteron::Choice<hysteron::Start> {
             FitStart::Auto => Self::Auto,
             FitStart::Off => Self::Fixed(hysteron::Start::Off),
             FitStart::On => Self::Fixed(hysteron::Start::On),
+            FitStart::Rest => Self::Fixed(hysteron::Start::Rest),
             FitStart::Unknown => Self::Fixed(hysteron::Start::Unknown),
         }
     }
@@ -92,6 +95,8 @@ pub(crate) enum Start {
     Off,
     /// All on, as after the highest input
     On,
+    /// All off, then at rest at the input that explains the beginning of the recording
+    Rest,
     /// Not known: estimated from the beginning of the recording
     Unknown,
 }
@@ -229,6 +234,7 @@ impl From<Start> for hysteron::Start {
             Start::Fitted => Self::Fitted,
             Start::Off => Self::Off,
             Start::On => Self::On,
+            Start::Rest => Self::Rest,
             Start::Unknown => Self::Unknown,
         }
     }

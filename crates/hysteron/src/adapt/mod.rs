@@ -342,7 +342,7 @@ fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(bool,
         // A model that adapts starts as it is, with its operators off or on.
         Start::Off | Start::Fitted => Ok((false, from(false)?)),
         Start::On => Ok((true, from(true)?)),
-        Start::Unknown => {
+        Start::Rest | Start::Unknown => {
             let (off, on) = (from(false)?, from(true)?);
             Ok(match error(&on) < error(&off) {
                 true => (true, on),

@@ -1,7 +1,7 @@
 //! Forward and inverse tests of a model on one recording.
 
 use crate::error::{Error, Result};
-use crate::identify::find_start;
+use crate::identify::{find_rest, find_start};
 use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State, Surroundings};
 use crate::recording::Recording;
 use crate::series::Errors;
@@ -148,6 +148,10 @@ pub(crate) fn begin(
         Start::Fitted => (model.start(), None),
         Start::Off => (model.off(), None),
         Start::On => (model.saturated(), None),
+        Start::Rest => {
+            let (state, samples) = find_rest(model, recording)?;
+            (state, Some(samples))
+        }
         Start::Unknown => {
             let (found, samples) = find_start(model, recording)?;
             let state = model.restore(&found.turning_points, found.input)?;

@@ -147,6 +147,7 @@ impl FleetRow {
                 let start = match fit.start {
                     Start::Off => "off",
                     Start::On => "on",
+                    Start::Rest => "rest",
                     Start::Fitted => "fitted",
                     Start::Unknown => "unknown",
                 };

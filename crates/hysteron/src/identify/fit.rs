@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::choose::Open;
-use crate::identify::choose::start::usual_start;
+use crate::identify::choose::start::{at_rest, usual_start};
 use crate::identify::doubt::sessions::widen;
 use crate::identify::kept;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
@@ -316,23 +316,26 @@ impl<'a> Fit<'a> {
         if options.asks_after() {
             stages::check_time(recordings)?;
         }
+        // A body and a load change what the operators see of the first sample.
+        let plain = !self.body && recordings.iter().all(|recording| recording.load.is_none());
         if let (true, Some(prior)) = (self.auto_start, &self.prior) {
             options.start = prior.start();
         } else if self.auto_start {
-            // A body and a load change what the operators see of the first sample. Of these
-            // recordings most begin at rest.
-            let plain = !self.body && recordings.iter().all(|recording| recording.load.is_none());
+            // Of these recordings most begin at rest.
             options.start = match plain {
                 true => Start::Unknown,
                 false => Start::Off,
             };
+        }
+        if options.start == Start::Rest && options.rest.is_none() && plain {
+            options = at_rest(recordings, &options)?;
         }
         let (seen, outliers) = match options.robust {
             true => outliers::mended(recordings, &options, self.progress)?,
             false => (Cow::Borrowed(recordings), Vec::new()),
         };
         if self.auto_start && self.prior.is_none() && options.start == Start::Unknown {
-            options.start = usual_start(&seen, &options)?;
+            options = usual_start(&seen, &options)?;
         }
         let mut model = match &self.prior {
             Some(prior) => prior.fit(&seen, &options, self.progress)?,
@@ -349,7 +352,7 @@ impl<'a> Fit<'a> {
         if let Some(fit) = &mut model.fit {
             fit.outliers = outliers;
         }
-        let mut model = kept::with_start(model, &seen, options.start)?;
+        let mut model = kept::with_start(model, &seen, &options)?;
         kept::tell_errors(&mut model, recordings, |_| true)?;
         widen(&mut model, &self.repeats)?;
         Ok(model)

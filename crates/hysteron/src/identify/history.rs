@@ -58,7 +58,7 @@ pub(crate) fn find_start(model: &Model, recording: &Recording) -> Result<(Fitted
 }
 
 /// Number of samples until the input has covered nine tenths of its range.
-fn beginning(input: &[f64]) -> usize {
+pub(super) fn beginning(input: &[f64]) -> usize {
     let (low, high) = range(input);
     let (mut least, mut most) = (input[0], input[0]);
     let covers = |x: &f64| {
@@ -68,7 +68,7 @@ fn beginning(input: &[f64]) -> usize {
     1 + input.iter().position(covers).unwrap_or(input.len() - 1)
 }
 
-fn head(recording: &Recording, samples: usize) -> Recording {
+pub(super) fn head(recording: &Recording, samples: usize) -> Recording {
     let cut = |values: &Vec<f64>| values[..samples].to_vec();
     Recording {
         time: recording.time.as_ref().map(cut),

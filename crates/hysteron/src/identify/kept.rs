@@ -1,7 +1,10 @@
 //! The start that a model keeps, and the errors of a fit from that start.
 
 use crate::error::Result;
+use crate::identify::changed::on_grid;
 use crate::identify::history::find_start;
+use crate::identify::options::FitOptions;
+use crate::identify::rest::after;
 use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::Errors;
@@ -16,12 +19,29 @@ use std::collections::HashSet;
 ///
 /// # Errors
 /// As [`Model::run_in`].
-pub(super) fn with_start(model: Model, recordings: &[Recording], start: Start) -> Result<Model> {
-    match start {
+pub(super) fn with_start(
+    model: Model,
+    recordings: &[Recording],
+    options: &FitOptions,
+) -> Result<Model> {
+    match options.start {
         Start::Off | Start::Fitted => return model.with_start(None),
         Start::On => {
             let on = model.saturated();
             return model.starting_from(&on);
+        }
+        Start::Rest => {
+            let inputs = options.rest.unwrap_or_default();
+            let seen = inputs.map(on_grid(model.spacing(), model.plane()));
+            let rested = after(&model, &seen)?;
+            let mut model = match rested == model.off() {
+                true => model.with_start(None)?,
+                false => model.starting_from(&rested)?,
+            };
+            if let Some(fit) = &mut model.fit {
+                fit.other.insert("rest".into(), json!(inputs));
+            }
+            return Ok(model);
         }
         Start::Unknown => {}
     }

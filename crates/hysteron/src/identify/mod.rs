@@ -6,6 +6,7 @@
 //! `advice` and `monotone` warn about data that the model cannot follow.
 
 mod advice;
+mod changed;
 mod choose;
 mod doubt;
 mod fit;
@@ -17,6 +18,7 @@ mod neighbours;
 mod options;
 mod outliers;
 mod prior;
+mod rest;
 mod stages;
 mod weights;
 mod words;
@@ -36,6 +38,7 @@ pub use monotone::{AGAINST_INPUT, way_against_input};
 pub(crate) use options::SOME_SMOOTHNESS;
 pub use options::{Auto, Choice, FitOptions, LoadLaw, Spacing};
 pub use prior::WeightPrior;
+pub(crate) use rest::find_rest;
 pub use weights::experiment::plane_of;
 pub(crate) use weights::pivoting;
 pub(crate) use weights::rows::{Initial, Term};

@@ -92,7 +92,7 @@ pub enum Spacing {
 /// | `smooth` | none; auto | 0 to 1e6 each | along and across the diagonal, see [`Smooth`] |
 /// | `ridge` | 1e-6 | 0 to 1 | pulls weights that the data hardly move to zero |
 /// | `robust` | off; auto | | whether outliers are found and given no weight |
-/// | `start` | off; auto | off, on, unknown | state of the operators before each recording |
+/// | `start` | off; auto | off, on, rest, unknown | state of the operators before each recording |
 /// | `load_law` | shift | shift, weights | what a load changes, if there is one |
 /// | `load_degree` | auto | 0 to 5 | order of the weights in the load; auto: by loads left out |
 /// | `spacing` | uniform; auto | uniform, auto | where the levels are |
@@ -123,6 +123,9 @@ pub struct FitOptions {
     pub robust: bool,
     /// State of the operators before the first sample of each recording.
     pub start: Start,
+    /// For [`Start::Rest`]: the two inputs at which the operators were before each recording, one
+    /// after the other, in the unit of the input. `None` to find them.
+    pub rest: Option<[f64; 2]>,
     /// What a load changes.
     pub load_law: LoadLaw,
     /// Gain and offset over the load, if they are known; the weights then do not depend on it.
@@ -193,6 +196,7 @@ impl FitOptions {
             ridge: RIDGE,
             robust: false,
             start: Start::Off,
+            rest: None,
             load_law: LoadLaw::Shift,
             load_curves: None,
             load_degree: None,

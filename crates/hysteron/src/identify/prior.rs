@@ -118,7 +118,7 @@ impl WeightPrior {
         errors.sort_by(f64::total_cmp);
         let start = |model: &Model| model.fit.as_ref().map(|fit| fit.start);
         let alike = models.iter().all(|model| start(model) == start(first));
-        let start = start(first).filter(|start| alike && *start != Start::Fitted);
+        let start = start(first).filter(|start| alike && matches!(start, Start::Off | Start::On));
         let step = models.len().div_ceil(MOST);
         let rows: Vec<Vec<f64>> = models.iter().step_by(step).map(in_states).collect();
         let (mean, covariance) = moments(&rows);

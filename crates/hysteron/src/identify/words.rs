@@ -81,9 +81,10 @@ pub const FIT_OPTIONS: [FitOption; 18] = [
     FitOption {
         name: "start",
         default: "`auto`",
-        range: "`auto`, `off`, `on`, `unknown`",
-        purpose: "where the operators stand before each recording; `auto`: off or on, \
-                  unless unknown predicts clearly better",
+        range: "`auto`, `off`, `on`, `rest`, `unknown`",
+        purpose: "where the operators stand before each recording; `rest`: all off, then at an \
+                  input that the fit finds; `auto`: at rest, unless unknown predicts clearly \
+                  better",
     },
     FitOption {
         name: "load_law",
@@ -192,6 +193,7 @@ impl Fit<'_> {
             ("start", "auto") => self.start(Auto),
             ("start", "off") => self.start(Start::Off),
             ("start", "on") => self.start(Start::On),
+            ("start", "rest") => self.start(Start::Rest),
             ("start", "unknown") => self.start(Start::Unknown),
             ("load_law", "shift") => self.load_law(LoadLaw::Shift),
             ("load_law", "weights") => self.load_law(LoadLaw::Weights),

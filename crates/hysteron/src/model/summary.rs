@@ -30,6 +30,9 @@ pub enum Start {
     /// The state that the model's fit found; all operators off for a model without one. A fit
     /// itself cannot start from it.
     Fitted,
+    /// All operators off, then at rest at an input that the fit finds. From there the first input
+    /// of any recording is reached. What it finds is the state that the model's fit found.
+    Rest,
     /// Unknown: the initial states of operators that the first sample does not determine are
     /// estimated together with the weights.
     Unknown,

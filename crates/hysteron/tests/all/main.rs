@@ -33,6 +33,7 @@ mod priors;
 mod readings_that_agree;
 mod recordings;
 mod remedies;
+mod rest;
 mod rivals;
 mod rivals_left_out;
 mod roles;

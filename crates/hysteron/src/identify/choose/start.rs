@@ -1,12 +1,15 @@
 //! Chooses the state of the operators before the first sample.
 
 use crate::error::Result;
+use crate::identify::changed::thin;
 use crate::identify::choose::validate::{Candidates, Choice, choose};
 use crate::identify::options::{FitOptions, SOME_SMOOTHNESS};
+use crate::identify::rest::search;
 use crate::identify::weights::problem::Problem;
 use crate::model::Start;
 use crate::progress::Progress;
 use crate::recording::Recording;
+use crate::series::range;
 
 /// From this share of operators on, it matters that the first sample does not determine their
 /// state.
@@ -16,13 +19,16 @@ pub(crate) const MANY_OPEN: f64 = 0.05;
 /// [`Criterion::is_worth`](crate::model::Criterion::is_worth).
 const WORTH: f64 = 0.02;
 
-/// The start that the recordings ask for: off where the first samples determine nearly all
-/// operators; otherwise off, on or unknown, by the same criterion as levels and smoothness. The
-/// unknown start has to be clearly better than the others.
+/// A fit for the search of a rest sees about so many samples: its answer is one input.
+const SEARCHED: usize = 4000;
+
+/// The options with the start that the recordings ask for: off where the first samples determine
+/// nearly all operators; otherwise a rest, whose input has the least error of a fit. An unknown
+/// start has to be clearly better, by the same criterion as levels and smoothness.
 ///
 /// # Errors
 /// As [`crate::Fit::run`] for invalid recordings and options.
-pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Start> {
+pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<FitOptions> {
     let off = FitOptions {
         start: Start::Off,
         ..options.clone()
@@ -30,29 +36,60 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Sta
     let problem = Problem::new(recordings, &off)?;
     let operators = problem.regressor.plane().operators() as f64;
     if problem.regressor.open_at_start as f64 <= MANY_OPEN * operators {
-        return Ok(Start::Off);
+        return Ok(off);
     }
     let smooth = options.smooth.at_least(SOME_SMOOTHNESS);
     let candidates = Candidates::new(Some(options.levels), Some(smooth));
-    let tried = |start: Start| -> Result<Choice> {
-        let options = FitOptions {
-            start,
-            ..options.clone()
-        };
+    let tried = |options: &FitOptions| -> Result<Choice> {
         choose(
             recordings.into(),
-            &options,
+            options,
             &candidates,
             None,
             Progress::NONE,
         )
     };
-    let (off, on) = (tried(Start::Off)?, tried(Start::On)?);
-    let known = match on.value() < off.value() {
-        true => (on.value(), Start::On),
-        false => (off.value(), Start::Off),
+    let (rest, unknown) = (
+        at_rest(recordings, options)?,
+        FitOptions {
+            start: Start::Unknown,
+            ..options.clone()
+        },
+    );
+    let (known, free) = (tried(&rest)?, tried(&unknown)?);
+    let better = free.criterion.is_worth(free.value(), known.value(), WORTH);
+    Ok(if better { unknown } else { rest })
+}
+
+/// The options with a rest: that with the least error of a fit to the recordings.
+///
+/// # Errors
+/// As [`crate::Fit::run`].
+pub(crate) fn at_rest(recordings: &[Recording], options: &FitOptions) -> Result<FitOptions> {
+    let samples: usize = recordings.iter().map(Recording::len).sum();
+    let stride = samples.div_ceil(SEARCHED);
+    let recordings: Vec<Recording> = recordings
+        .iter()
+        .map(|recording| thin(recording.clone(), stride))
+        .collect();
+    let ranges = recordings.iter().map(|recording| range(&recording.input));
+    let all = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let with = |rest| FitOptions {
+        start: Start::Rest,
+        rest: Some(rest),
+        ..options.clone()
     };
-    let unknown = tried(Start::Unknown)?;
-    let better = unknown.criterion.is_worth(unknown.value(), known.0, WORTH);
-    Ok(if better { Start::Unknown } else { known.1 })
+    let mut tried = FitOptions {
+        smooth: options.smooth.at_least(SOME_SMOOTHNESS),
+        ..with([0.0; 2])
+    };
+    let error = |rest| {
+        tried.rest = Some(rest);
+        let mut problem = Problem::new(&recordings, &tried)?;
+        let fitted = problem.solve(None, Progress::NONE)?;
+        tried.sign = Some(fitted.sign);
+        Ok(fitted.solution.residual.iter().map(|r| r * r).sum())
+    };
+    let (rest, _) = search(all.unwrap_or_default(), error)?;
+    Ok(with(rest))
 }

@@ -49,6 +49,9 @@ fn variance(factors: &[LoadPart], problem: &Problem, sign: Sign) -> Result<Vec<f
                 Start::On => operators.saturated(),
                 _ => operators.start(),
             };
+            for input in options.rest.into_iter().flatten() {
+                operators.step(&mut state, input)?;
+            }
             let own = &mut variance[range.clone()];
             add_variance(
                 &operators,

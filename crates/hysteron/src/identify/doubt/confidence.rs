@@ -92,6 +92,7 @@ pub(crate) fn estimate(
     // among the unknowns.
     let start = match options.start {
         Start::On => Initial::On,
+        Start::Rest => options.rest.map_or(Initial::Off, Initial::After),
         _ => Initial::Off,
     };
     Ok(Some(Confidence {

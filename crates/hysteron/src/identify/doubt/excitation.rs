@@ -179,8 +179,14 @@ fn branches_moved(
         };
         let mut states = weights.clone();
         let mut plain = Definition::new(plane, operator, &weights, &mut states)?;
-        if start == Initial::On {
-            plain.step(plane.max())?;
+        match start {
+            Initial::Off => {}
+            Initial::On => _ = plain.step(plane.max())?,
+            Initial::After(inputs) => {
+                for input in inputs {
+                    plain.step(input)?;
+                }
+            }
         }
         // The movement before the first sample was not recorded, so it does not count.
         plain.step(first)?;

@@ -1,9 +1,9 @@
 //! Identifies a thermal body by the fit of the weights behind it.
 
 use crate::error::{Error, Result};
+use crate::identify::changed::thin;
 use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::changed::thin;
 use crate::identify::stages::nelder_mead::minimise;
 use crate::model::{FirstOrder, needs_time};
 use crate::progress::Progress;

@@ -6,7 +6,6 @@
 
 mod after;
 mod body;
-mod changed;
 mod curve;
 mod load;
 mod nelder_mead;

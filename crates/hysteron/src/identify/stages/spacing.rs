@@ -1,10 +1,10 @@
 //! Places the levels where the output moves.
 
 use crate::error::Result;
+use crate::identify::changed::{on_grid, with_inputs};
 use crate::identify::choose::{Open, Seen};
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::changed::{on_grid, with_inputs};
 use crate::identify::weights::experiment::plane_of_all;
 use crate::model::{Plane, Validation};
 use crate::progress::Progress;
@@ -54,6 +54,7 @@ pub(super) fn find(
         return Ok(None);
     }
     let recordings = behind(&corners, &plane, recordings);
+    options = resting(&corners, &plane, &options);
     let mut validation = None;
     if let Some(uniform) = chosen {
         let open = Open {
@@ -96,6 +97,7 @@ fn best_fit(
     let rated = |corners: &[f64]| {
         progress.tell("spacing of the levels", f64::NAN)?;
         let seen = behind(corners, plane, recordings);
+        let options = resting(corners, plane, &options);
         let model = fit_weights(&seen, &options, Progress::NONE)?;
         Ok::<_, crate::error::Error>(model.fit.map_or(f64::INFINITY, |fit| fit.rmse))
     };
@@ -178,5 +180,17 @@ fn spread(bins: &mut [f64], [a, b]: [f64; 2], amount: f64) {
 
 /// The recordings on the uniform grid of the plane.
 pub(super) fn behind(corners: &[f64], plane: &Plane, recordings: &[Recording]) -> Vec<Recording> {
-    with_inputs(recordings, |recording| on_grid(corners, plane, recording))
+    let on_grid = on_grid(corners, plane);
+    with_inputs(recordings, |recording| {
+        recording.input.iter().map(|x| on_grid(*x)).collect()
+    })
+}
+
+/// The options with their rest on the uniform grid of the plane.
+fn resting(corners: &[f64], plane: &Plane, options: &FitOptions) -> FitOptions {
+    let on_grid = on_grid(corners, plane);
+    FitOptions {
+        rest: options.rest.map(|rest| rest.map(on_grid)),
+        ..options.clone()
+    }
 }

@@ -1,7 +1,5 @@
 //! A column of the regressor.
 
-use crate::identify::weights::rows::Initial;
-
 /// An operator that is multiplied by a function of the load, from one start in each recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Column {
@@ -21,11 +19,8 @@ impl Column {
         Self { part, operator, on }
     }
 
-    pub(super) fn initial_in(&self, recording: usize) -> Initial {
-        if self.on >> recording & 1 == 1 {
-            Initial::On
-        } else {
-            Initial::Off
-        }
+    /// Whether the operator starts on in a recording.
+    pub(super) fn is_on_in(&self, recording: usize) -> bool {
+        self.on >> recording & 1 == 1
     }
 }

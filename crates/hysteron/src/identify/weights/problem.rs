@@ -47,7 +47,12 @@ impl<'a> Problem<'a> {
             1
         };
         check_gram(plane.operators() * experiment.parts.len() * sides)?;
-        let regressor = Regressor::new(plane, options.operator, &experiment, options.start)?;
+        let regressor = Regressor::new(
+            plane,
+            options.operator,
+            &experiment,
+            (options.start, options.rest),
+        )?;
         Ok(Self {
             experiment,
             regressor,
@@ -250,7 +255,18 @@ pub(crate) fn check_options(options: &FitOptions) -> Result<()> {
     }
     if options.start == Start::Fitted {
         return Err(Error::Fit(
-            "a fit finds the start, and cannot begin from a fitted one: take off, on or unknown"
+            "a fit finds the start, and cannot begin from a fitted one: take off, on, rest or unknown"
+                .into(),
+        ));
+    }
+    if options.start == Start::Rest
+        && options
+            .rest
+            .is_none_or(|rest| !rest.iter().all(|x| x.is_finite()))
+    {
+        return Err(Error::Fit(
+            "a start at rest needs the inputs of the rest: they are found for a model without \
+             thermal body and load, so take off, on or unknown"
                 .into(),
         ));
     }

@@ -37,6 +37,8 @@ pub(crate) struct Regressor {
     /// its state. Empty if the start is known.
     open: Vec<u64>,
     columns: Vec<Column>,
+    /// The state of the operators that do not start on.
+    known: Initial,
     /// Number of operators whose state the first sample of some recording does not determine.
     pub(crate) open_at_start: usize,
 }
@@ -46,7 +48,7 @@ impl Regressor {
         plane: Plane,
         operator: Operator,
         experiment: &Experiment,
-        start: Start,
+        (start, rest): (Start, Option<[f64; 2]>),
     ) -> Result<Self> {
         let form = SparseForm::new(plane, operator)?;
         let mut regressor = Self {
@@ -54,6 +56,10 @@ impl Regressor {
             open: Vec::new(),
             open_at_start: 0,
             columns: Vec::new(),
+            known: match (start, rest) {
+                (Start::Rest, Some(rest)) => Initial::After(rest),
+                _ => Initial::Off,
+            },
         };
         let on = if start == Start::On { u64::MAX } else { 0 };
         let operators = regressor.form.operators();
@@ -84,6 +90,19 @@ impl Regressor {
             }
         }
         Ok(open)
+    }
+
+    /// The states from which operators can start.
+    fn initials(&self) -> [Initial; 2] {
+        [self.known, Initial::On]
+    }
+
+    /// The state from which the operator of a column starts in a recording.
+    pub(super) fn initial(&self, column: &Column, recording: usize) -> Initial {
+        match column.is_on_in(recording) {
+            true => Initial::On,
+            false => self.known,
+        }
     }
 
     fn unknown_start(&self) -> bool {
@@ -121,11 +140,11 @@ impl Regressor {
         let mut output = vec![0.0; experiment.input.len()];
         for (s, range) in experiment.recordings.iter().enumerate() {
             for (part, values) in experiment.parts.iter().enumerate() {
-                for from in [Initial::Off, Initial::On] {
+                for from in self.initials() {
                     let mut weights = vec![0.0; self.form.operators()];
                     let mut any = false;
                     for (column, &x) in self.columns.iter().zip(x) {
-                        if column.part == part && column.initial_in(s) == from && x != 0.0 {
+                        if column.part == part && self.initial(column, s) == from && x != 0.0 {
                             weights[column.operator] += x;
                             any = true;
                         }
@@ -167,7 +186,7 @@ impl Regressor {
             let all = self.products(experiment, recordings.clone(), &residual, count, &group)?;
             for (result, products) in results.iter_mut().zip(all) {
                 for (result, column) in result.iter_mut().zip(&self.columns) {
-                    let from = column.initial_in(recordings.start);
+                    let from = self.initial(column, recordings.start);
                     *result += products.product(column.part, from, column.operator);
                 }
             }
@@ -191,7 +210,7 @@ impl Regressor {
                     let corners = |x: &Vec<f64>| {
                         let mut weights = vec![0.0; self.form.operators()];
                         for (column, x) in self.columns.iter().zip(x) {
-                            if column.part == part && column.initial_in(s) == from {
+                            if column.part == part && self.initial(column, s) == from {
                                 weights[column.operator] += x;
                             }
                         }
@@ -228,12 +247,9 @@ impl Regressor {
         let has = |from: &Initial| {
             self.columns
                 .iter()
-                .any(|c| c.initial_in(recording) == *from)
+                .any(|column| self.initial(column, recording) == *from)
         };
-        [Initial::Off, Initial::On]
-            .into_iter()
-            .filter(has)
-            .collect()
+        self.initials().into_iter().filter(has).collect()
     }
 
     fn products(
@@ -310,7 +326,7 @@ impl Regressor {
                         let columns = self.columns.iter().enumerate();
                         columns
                             .filter(move |(_, c)| {
-                                c.part == part && c.initial_in(recordings.start) == from
+                                c.part == part && self.initial(c, recordings.start) == from
                             })
                             .map(|(n, c)| (n, c.operator))
                             .collect::<Vec<_>>()
@@ -400,7 +416,7 @@ impl Regressor {
         let mut kinds: Vec<(usize, Initial)> = Vec::new();
         let mut blocks: Vec<Block> = Vec::new();
         for (n, column) in self.columns.iter().enumerate() {
-            let kind = (column.part, column.initial_in(0));
+            let kind = (column.part, self.initial(column, 0));
             let place = kinds.iter().position(|other| *other == kind);
             let place = place.unwrap_or_else(|| {
                 kinds.push(kind);
@@ -449,8 +465,9 @@ impl Regressor {
                 let first = part * self.form.operators() + operator;
                 let (mut on, mut descent) = (0, -slopes[first]);
                 for (s, products) in all.iter().enumerate() {
-                    let [off, started_on] =
-                        [Initial::Off, Initial::On].map(|f| products.product(part, f, operator));
+                    let [off, started_on] = self
+                        .initials()
+                        .map(|from| products.product(part, from, operator));
                     let open = self.open[operator] >> s & 1 == 1;
                     on |= u64::from(open && started_on > off) << s;
                     descent += if open { off.max(started_on) } else { off };

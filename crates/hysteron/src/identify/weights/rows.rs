@@ -6,10 +6,12 @@ use crate::model::OperatorState;
 use hysteron_core::{Model, Turn, turn_capacity};
 
 /// State of the operators before the first sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Initial {
     Off,
     On,
+    /// Off, and then these inputs one after the other.
+    After([f64; 2]),
 }
 
 /// A non-zero element of `W`: its column and its value.
@@ -119,8 +121,14 @@ pub(crate) fn branch_terms(state: &OperatorState, place: &[u32]) -> [Term; 3] {
 pub(crate) fn state_of(model: &Model<f64, Vec<f64>>, from: Initial) -> Result<OperatorState> {
     let memory = vec![Turn::default(); turn_capacity(model.plane().levels())];
     let mut state = model.state(memory)?;
-    if from == Initial::On {
-        model.reset_on(&mut state)?;
+    match from {
+        Initial::Off => {}
+        Initial::On => model.reset_on(&mut state)?,
+        Initial::After(inputs) => {
+            for input in inputs {
+                model.step(&mut state, input)?;
+            }
+        }
     }
     Ok(state)
 }

@@ -93,7 +93,9 @@ impl UnitSums {
             }
             regressor.form().operators_of(&mut sums);
             for (result, column) in result.iter_mut().zip(columns) {
-                if column.part == slot.part && column.initial_in(slot.recording) == slot.from {
+                if column.part == slot.part
+                    && regressor.initial(column, slot.recording) == slot.from
+                {
                     *result += sums[column.operator];
                 }
             }

@@ -1,6 +1,6 @@
 //! Curves over the load that are made from others, and recordings behind them.
 
-use crate::identify::stages::changed::with_inputs;
+use crate::identify::changed::with_inputs;
 use crate::model::LoadCurves;
 use crate::recording::Recording;
 

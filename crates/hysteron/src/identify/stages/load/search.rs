@@ -1,9 +1,9 @@
 //! Searches the shift of each load, and finds stroke and offset at it.
 
 use crate::error::Result;
+use crate::identify::changed::thin;
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::changed::thin;
 use crate::identify::stages::load::curves::behind;
 use crate::identify::stages::load::groups::{Groups, Samples};
 use crate::identify::weights::problem::Problem;

@@ -16,8 +16,8 @@ pub(super) fn with_inputs(
     recordings.iter().map(with).collect()
 }
 
-/// The inputs of a recording on the uniform grid of the plane.
-pub(super) fn on_grid(spacing: &[f64], plane: &Plane, recording: &Recording) -> Vec<f64> {
+/// Where an input is on the uniform grid of the plane.
+pub(super) fn on_grid<'a>(spacing: &'a [f64], plane: &'a Plane) -> impl Fn(f64) -> f64 + 'a {
     let axis = Axis {
         spacing,
         ..Axis::PLAIN
@@ -28,8 +28,7 @@ pub(super) fn on_grid(spacing: &[f64], plane: &Plane, recording: &Recording) -> 
         gain: 1.0,
         offset: 0.0,
     };
-    let inputs = recording.input.iter();
-    inputs.map(|t| axis.forward(plane, unloaded, *t)).collect()
+    move |t| axis.forward(plane, unloaded, t)
 }
 
 /// Keeps of each run of `stride` samples the first one and those with extreme inputs. Without the
