@@ -14,11 +14,7 @@ use std::ptr::null_mut;
 const ROOMS: usize = 4;
 /// Bytes of each, enough for any object here.
 const ROOM: usize = 8192;
-const METHODS: [i32; 3] = [
-    HYSTERON_GRADIENT,
-    HYSTERON_INCREMENTS,
-    HYSTERON_LEAST_SQUARES,
-];
+const METHODS: [i32; 2] = [HYSTERON_INCREMENTS, HYSTERON_LEAST_SQUARES];
 
 /// What a room holds: the same object, made with the core.
 #[derive(Default, Clone)]
@@ -186,7 +182,7 @@ impl World {
 
     fn make_estimator(&mut self) {
         let (room, of) = (self.room(), self.room_of(Twin::is_model));
-        let (offset, method) = (self.number(), METHODS[self.rng.random_range(0..3)]);
+        let (offset, method) = (self.number(), METHODS[self.rng.random_range(0..2)]);
         // SAFETY: all fields are numbers.
         let mut options = unsafe { std::mem::zeroed() };
         // SAFETY: a live structure.
@@ -343,7 +339,6 @@ fn same(found: i32, result: f64, expected: Result<f64, Error>) {
 
 fn core_method(options: &HysteronAdaptation) -> Method<f64> {
     match options.method {
-        HYSTERON_GRADIENT => Method::Gradient { gain: options.gain },
         HYSTERON_INCREMENTS => Method::Increments {
             gain: options.gain,
             span: options.span,

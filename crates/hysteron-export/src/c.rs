@@ -1,6 +1,7 @@
 //! C99 with the model as constants.
 
 mod constants;
+mod learners;
 mod name;
 mod rounding;
 mod seal;
@@ -10,6 +11,7 @@ mod text;
 
 use constants::{Constants, Number};
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
+use learners::Learners;
 pub use stages::CSampling;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +31,7 @@ const ALGORITHM: [(&str, &str); 4] = [
 const HEADER: &str = include_str!("../mcu/hysteron_mcu.h");
 
 /// The same for models that learn.
-const ADAPTATION: [(&str, &str); 2] = [
+const ADAPTATION: [(&str, &str); 5] = [
     (
         "hysteron_mcu_adapt.h",
         include_str!("../mcu/hysteron_mcu_adapt.h"),
@@ -37,6 +39,18 @@ const ADAPTATION: [(&str, &str); 2] = [
     (
         "hysteron_mcu_adapt.c",
         include_str!("../mcu/hysteron_mcu_adapt.c"),
+    ),
+    (
+        "hysteron_mcu_guards.h",
+        include_str!("../mcu/hysteron_mcu_guards.h"),
+    ),
+    (
+        "hysteron_mcu_increments.h",
+        include_str!("../mcu/hysteron_mcu_increments.h"),
+    ),
+    (
+        "hysteron_mcu_least_squares.h",
+        include_str!("../mcu/hysteron_mcu_least_squares.h"),
     ),
 ];
 
@@ -176,8 +190,9 @@ impl CWorstCase {
 /// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as
 /// `hysteron_mcu.h`, `.c` and `hysteron_mcu_inverse.c`, the same for every model of a number type,
 /// and the model's constants as files of its name. With [`COptions::adaptation`] also
-/// `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with
-/// [`hysteron_core::Method::Gradient`].
+/// `hysteron_mcu_adapt.h`, `.c` and what they include, by which the model follows the plant as with
+/// the learners [`hysteron::Learner::Increments`], `Drift` and `LeastSquares`, with the digits of
+/// [`hysteron_core::Estimator`].
 ///
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
 /// in that type as well. A model with negative weights has no inverse there either.
@@ -291,6 +306,12 @@ fn texts<T: Number>(
         let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
         return Err(Error::Export(what.into()).remedied(remedy));
     }
+    let learners = match options.adaptation {
+        true => Some(Learners::of(model, &constants)?),
+        false => None,
+    };
+    let learned = learners.as_ref().map(|learners| learners.text(&name));
+    let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
         (true, _) => &[&ALGORITHM, &ADAPTATION],
@@ -313,7 +334,7 @@ fn texts<T: Number>(
             .as_ref()
             .map_or_else(Vec::new, |stages| stages.names()),
         dt: sampling.dt,
-        memory: constants.memory(options.adaptation),
+        memory: constants.memory(learns),
         worst_case: CWorstCase::of(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
@@ -323,8 +344,9 @@ fn texts<T: Number>(
         format!("/* hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
-    texts.push(text::header(&export, &constants, model, options.source));
-    texts.push(text::source(&export, &constants));
+    let (source, learned) = (options.source, learned.as_ref());
+    texts.push(text::header(&export, &constants, model, source, learned));
+    texts.push(text::source(&export, &constants, learned));
     let sealed = texts.iter().map(|text| seal::sealed(text)).collect();
     Ok((export, sealed))
 }

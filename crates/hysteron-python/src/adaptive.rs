@@ -25,11 +25,11 @@ use pyo3::types::PyDict;
 /// ----------
 /// model : Model
 ///     The off-line model. It stays as it is.
-/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments'}
+/// method : {'fixed', 'refit', 'drift', 'least-squares', 'increments'}
 ///     'refit': all weights, by least squares over the last cycle of the input, again and again.
-///     'gradient': all weights, by the normalised gradient. 'increments': the same on increments.
-///     'least-squares': all weights, by recursive least squares. 'drift': coefficients of a few
-///     patterns in which weights change under load and drift, by least squares.
+///     'drift': coefficients of a few patterns in which weights change under load and drift, by
+///     least squares. 'least-squares': all weights, by recursive least squares. 'increments': all
+///     weights, by the normalised gradient on increments. 'fixed': nothing learns.
 /// start : {'off', 'on'}
 ///     State of the operators.
 /// window : str, optional
@@ -42,7 +42,7 @@ use pyo3::types::PyDict;
 ///     'refit': strength of the ridge that holds the weights where they are, relative to the
 ///     window's matrix, above 0 and up to 1. By default 0.1.
 /// gain : float, optional
-///     Gradient methods: the share of a sample's error to remove, above 0 and below 2. By default
+///     'increments': the share of an increment's error to remove, above 0 and below 2. By default
 ///     0.3.
 /// span : float, optional
 ///     'increments': levels between two updates, from 1/8 to 8. By default 1.
@@ -60,7 +60,7 @@ use pyo3::types::PyDict;
 ///     'least-squares': correlation length of the deviations, in levels, from 0 on. By default 1.
 /// offset_share : float, optional
 ///     How freely the offset moves, relative to one weight or coefficient, from 0 on. By default
-///     0.2 √N for N weights with the gradient methods; with least squares such that the offset may
+///     0.2 √N for N weights with 'increments'; with least squares such that the offset may
 ///     deviate by 30 % of the model's range.
 /// dead_zone : float, optional
 ///     Errors up to this are noise, in the output's unit, from 0 on. By default 0.

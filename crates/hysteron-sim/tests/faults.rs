@@ -5,10 +5,10 @@
 
 mod loops;
 
+use hysteron::Model;
 use hysteron::control::{
     Action, Compensator, Controller, Disturbance, LoopStatus, Reference, Scheme, SimulatedPlant,
 };
-use hysteron::{Adaptive, Model};
 use hysteron_sim::track::PlantOptions;
 use loops::{Known, rms};
 use rand::{RngExt, SeedableRng};
@@ -70,10 +70,8 @@ struct Course {
 }
 
 fn controller(known: &Known, with: With) -> Controller {
-    let adapting = |model: &Model| {
-        let adaptation = known.scenario.adaptation.resolve(model).unwrap();
-        Compensator::adaptive(Adaptive::new(model, adaptation).unwrap())
-    };
+    let adapting =
+        |model: &Model| Compensator::adaptive(known.scenario.adaptation.adaptive(model).unwrap());
     let compensator = match with {
         With::Pid => None,
         With::Fixed => Some(Compensator::fixed(&known.model).unwrap()),

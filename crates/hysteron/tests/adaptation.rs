@@ -10,9 +10,8 @@ use hysteron::{
     Step, Turning, Window, adapt, plane_of, prepare,
 };
 
-const LEARNERS: [Learner; 5] = [
+const LEARNERS: [Learner; 4] = [
     Learner::Refit,
-    Learner::Gradient,
     Learner::Increments,
     Learner::LeastSquares,
     Learner::Drift,
@@ -63,7 +62,7 @@ fn every_learner_follows_a_plant_with_another_stroke() {
         let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
         let (first, last) = (adapted.thirds[0], adapted.thirds[2]);
         // The plant is the model but for its stroke: what is left after fifty loops is what is
-        // still being learned, and with the gradient methods a long tail of it.
+        // still being learned, and with increments a long tail of it.
         assert!(
             last.adapting.rmse < 0.2 * last.fixed.rmse,
             "{learner:?}: {last:?}"
@@ -470,7 +469,7 @@ fn what_cannot_be_adapted_is_refused() {
     assert!(refused(&model, &recording, gain).contains("`gain`"));
     let gain = AdaptOptions {
         gain: Some(2.5),
-        ..by(Learner::Gradient)
+        ..by(Learner::Increments)
     };
     assert!(refused(&model, &recording, gain).contains("gain"));
     let load = AdaptOptions {

@@ -107,7 +107,6 @@ static void save_and_restore(void) {
 
 void memory_form(void) {
     save_and_restore();
-    learns(HYSTERON_GRADIENT);
     learns(HYSTERON_INCREMENTS);
     learns(HYSTERON_LEAST_SQUARES);
 }

@@ -6,8 +6,8 @@ use crate::model::{Model, OperatorState, Sign};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
-    Adaptation, Channel, Estimator, Learning, Method, estimator_len, estimator_len_of_basis,
-    table_len,
+    Adaptation, Channel, Estimator, Learning, Method, Outcome, estimator_len,
+    estimator_len_of_basis, table_len,
 };
 use hysteron_core::{Solution, Target};
 
@@ -43,6 +43,8 @@ pub struct Adaptive {
 /// What finds the weights.
 #[derive(Debug, Clone)]
 enum Learns {
+    /// Nothing.
+    Fixed,
     /// From sample to sample.
     Estimator {
         estimator: Box<Estimator<f64, Vec<f64>>>,
@@ -55,6 +57,14 @@ enum Learns {
 }
 
 impl Adaptive {
+    /// A model that does not change, for a place where others learn.
+    ///
+    /// # Errors
+    /// As [`Model::plain`].
+    pub fn fixed(model: &Model) -> Result<Self> {
+        Self::over(model, model.plain()?.core.clone(), Learns::Fixed)
+    }
+
     /// Adapts all weights of `model` and its offset. It starts with all operators off.
     ///
     /// # Errors
@@ -157,6 +167,12 @@ impl Adaptive {
         let factor = self.sign().factor();
         let raw = factor * measured;
         let learning = match &mut self.learner {
+            Learns::Fixed => fixed(
+                &self.core,
+                &mut self.state,
+                input,
+                (raw, factor * self.offline.offset()),
+            )?,
             Learns::Estimator { estimator, .. } => {
                 estimator.step(&mut self.core, &mut self.state, input, raw)?
             }
@@ -252,6 +268,7 @@ impl Adaptive {
         let (estimator, basis) = match &self.learner {
             Learns::Estimator { estimator, basis } => (estimator, basis),
             Learns::Refitter(refitter) => return refitter.weights(),
+            Learns::Fixed => return self.offline.weights().to_vec(),
         };
         let parameters = estimator.parameters();
         if basis.is_empty() {
@@ -277,6 +294,7 @@ impl Adaptive {
         match &self.learner {
             Learns::Estimator { estimator, .. } => estimator.offset(),
             Learns::Refitter(refitter) => refitter.offset(),
+            Learns::Fixed => self.sign().factor() * self.offline.offset(),
         }
     }
 
@@ -332,6 +350,7 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.freeze(frozen),
             Learns::Refitter(refitter) => refitter.freeze(frozen),
+            Learns::Fixed => {}
         }
     }
 
@@ -342,6 +361,7 @@ impl Adaptive {
         match &self.learner {
             Learns::Estimator { estimator, .. } => estimator.stuck(),
             Learns::Refitter(refitter) => refitter.stuck(),
+            Learns::Fixed => None,
         }
     }
 
@@ -350,6 +370,7 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.keep(),
             Learns::Refitter(refitter) => refitter.keep(),
+            Learns::Fixed => {}
         }
     }
 
@@ -362,6 +383,7 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.roll_back(&mut self.core),
             Learns::Refitter(refitter) => refitter.roll_back(&mut self.core)?,
+            Learns::Fixed => {}
         }
         Ok(self.core.rebase(&mut self.state)?)
     }
@@ -384,12 +406,33 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.realign(),
             Learns::Refitter(refitter) => refitter.realign(),
+            Learns::Fixed => {}
         }
     }
 
     fn sign(&self) -> Sign {
         self.offline.sign()
     }
+}
+
+/// A step of a model that does not change. `measured` and `offset` are without the sign.
+fn fixed(
+    core: &hysteron_core::Model<f64, Vec<f64>>,
+    state: &mut OperatorState,
+    input: f64,
+    (measured, offset): (f64, f64),
+) -> Result<Learning<f64>> {
+    if !measured.is_finite() {
+        return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
+    }
+    let step = core.step(state, input)?;
+    let output = step.output + offset;
+    Ok(Learning {
+        output,
+        error: measured - output,
+        outcome: Outcome::Frozen,
+        clipped: step.clipped,
+    })
 }
 
 /// The inverse of a core model with an offset and the sign of the model.
