@@ -176,7 +176,7 @@ def test_it_cannot_be_pickled_but_its_model_can():
         ({"window": 3}, TypeError, "`window` is 3: a text is needed"),
         ({"trial": 3}, pyhysteron.FitError, "`trial` is an option of"),
         ({"noise": 1.0}, pyhysteron.FitError, "`noise` is an option of"),
-        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'refit'"),
+        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'fixed', 'refit'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
         ({"gian": 0.3}, TypeError, "there is no argument `gian`"),
         ({"method": "increments", "gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),

@@ -35,6 +35,10 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
             unsafe { arguments.value(options, "options")? }.adaptation()?
         };
         let model = MODELS.get(model, "model")?;
+        // A step here has no time.
+        if model.is_timed() {
+            model.plain()?;
+        }
         let adaptive = Adaptive::new(&model, options)?;
         out.set(LEARNERS.insert(Mutex::new(adaptive))?);
         Ok(())

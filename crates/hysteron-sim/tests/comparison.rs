@@ -3,8 +3,8 @@
 
 mod loops;
 
-use hysteron::{Learner, Progress};
-use hysteron_sim::track::{Comparison, Kind, track};
+use hysteron::{AdaptOptions, Learner, Progress};
+use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 use loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario};
 
 fn rmse(found: &Comparison, kind: Kind, window: usize) -> f64 {
@@ -74,6 +74,25 @@ fn every_learner_runs_in_a_scenario() {
         assert!(adaptive < most * fixed, "{learner}: {adaptive} {fixed}");
     }
     assert_eq!(run(None), run(Some(Learner::Refit)));
+}
+
+/// A model with a thermal body learns its weights in the loop. A warmer room is a shift, which
+/// `load` follows: here a refit is no better than the model left alone.
+#[test]
+fn a_refit_runs_behind_a_thermal_body() {
+    let mut wire = Scenario::load("wire").unwrap();
+    (wire.seeds, wire.adaptation) = (1, AdaptOptions::default());
+    wire.controllers = vec![Kind::InversePid, Kind::AdaptivePid];
+    let found = track(&wire, Progress::NONE).unwrap();
+    for w in 0..found.windows.len() {
+        let [fixed, adaptive] =
+            [Kind::InversePid, Kind::AdaptivePid].map(|kind| rmse(&found, kind, w));
+        println!(
+            "{}: fixed {fixed:.3}, refit {adaptive:.3}",
+            found.windows[w].name
+        );
+        assert!(adaptive < 4.0 * fixed, "{w}: {adaptive} {fixed}");
+    }
 }
 
 #[test]

@@ -181,7 +181,11 @@ impl AdaptOptions {
 
     /// The options of an estimator of weights or coefficients.
     fn weights(&self, model: &Model, rough: f64, range: f64) -> Adaptation<f64> {
-        let (off, on) = model.output_range();
+        // Of the operators: what is behind them is undone before anything is learned.
+        let (off, on) = match model.load {
+            None => model.within().output_range(),
+            Some(_) => model.output_range(),
+        };
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
         let drift = usize::from(self.learner == Learner::Drift);
