@@ -225,8 +225,8 @@ fn the_adapted_file_says_how_it_came_about() {
 #[test]
 fn frozen_it_stays_and_what_was_kept_comes_back() {
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
-    let options = by(Learner::LeastSquares).adaptation(&model, &recording);
-    let mut adaptive = Adaptive::new(&model, options.unwrap()).unwrap();
+    let options = by(Learner::LeastSquares);
+    let mut adaptive = options.adaptive_after(&model, &recording).unwrap();
     let learn = |adaptive: &mut Adaptive| {
         for (input, output) in recording.input.iter().zip(&recording.output) {
             adaptive.step(*input, *output).unwrap();

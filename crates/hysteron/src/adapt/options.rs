@@ -55,20 +55,12 @@ impl AdaptOptions {
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The options of an estimator for `model` on `recording`.
-    ///
-    /// # Errors
-    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Fixed`], [`Learner::Refit`] and
-    /// [`Learner::Load`], which are no estimators of weights.
-    pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
-        self.resolve(model, recording)?.estimator()
-    }
-
     /// The options of an estimator for `model` before any measurement. `Y` is the model's range,
     /// and the output is assumed to have no noise.
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`].
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Fixed`], [`Learner::Refit`] and
+    /// [`Learner::Load`], which are no estimators of weights.
     pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
         self.resolved(model, 0.0, 0.0)?.estimator()
     }
