@@ -231,7 +231,7 @@ fn options(method: i8) -> HysteronAdaptation {
     // SAFETY: a place for one; filled in with the first call or the second.
     unsafe {
         if hysteron_adaptation_default(i32::from(method), options.as_mut_ptr()) != HYSTERON_OK {
-            hysteron_adaptation_default(HYSTERON_GRADIENT, options.as_mut_ptr());
+            hysteron_adaptation_default(HYSTERON_INCREMENTS, options.as_mut_ptr());
         }
         let mut options = options.assume_init();
         options.method = i32::from(method);

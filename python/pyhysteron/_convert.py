@@ -16,7 +16,7 @@ _SHORTER = {"ms": 10**3, "us": 10**6, "ns": 10**9, "ps": 10**12, "fs": 10**15, "
 
 
 def did_you_mean(name: str, names: Iterable[str], quote: str = "'") -> str:
-    """`. Did you mean 'gradient'?` for a similar name, or nothing."""
+    """`. Did you mean 'increments'?` for a similar name, or nothing."""
     found = difflib.get_close_matches(str(name), list(names), n=1, cutoff=0.6)
     return f". Did you mean {quote}{found[0]}{quote}?" if found else ""
 

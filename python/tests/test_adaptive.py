@@ -10,7 +10,7 @@ from common import together
 import pyhysteron
 
 LEVELS = 8
-METHODS = ["refit", "gradient", "increments", "least-squares", "drift"]
+METHODS = ["refit", "increments", "least-squares", "drift"]
 TEMPERATURE = 50 - 40 * np.cos(0.05 * np.arange(2000)) * np.cos(0.003 * np.arange(2000))
 
 
@@ -153,32 +153,33 @@ def test_it_cannot_be_pickled_but_its_model_can():
 @pytest.mark.parametrize(
     ("options", "error", "text"),
     [
-        ({"method": "gradient", "gain": 2.0}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
-        ({"method": "gradient", "gain": float("nan")}, pyhysteron.CoreError, "`gain` must be"),
+        ({"method": "gradient"}, pyhysteron.FitError, "take `increments`"),
+        ({"method": "increments", "gain": 2.0}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
+        ({"method": "increments", "gain": float("nan")}, pyhysteron.CoreError, "`gain` must be"),
         ({"method": "increments", "span": 9}, pyhysteron.CoreError, "`span` must be from 1/8 to 8"),
         ({"method": "least-squares", "forgetting": 1.5}, pyhysteron.CoreError, "`forgetting` must be above 0 and up to 1"),
         ({"method": "least-squares", "noise": 0}, pyhysteron.CoreError, "`noise` must be above 0"),
         ({"method": "least-squares", "spread": -1}, pyhysteron.CoreError, "`spread` must be above 0"),
         ({"method": "least-squares", "correlation": -1}, pyhysteron.CoreError, "`correlation` must be a finite number from 0 on"),
-        ({"method": "gradient", "offset_share": -1}, pyhysteron.CoreError, "`offset_share` must be a finite number from 0 on"),
-        ({"method": "gradient", "dead_zone": -1}, pyhysteron.CoreError, "`dead_zone` must be"),
-        ({"method": "gradient", "leakage": 1.1}, pyhysteron.CoreError, "`leakage` must be from 0 to 1"),
+        ({"method": "increments", "offset_share": -1}, pyhysteron.CoreError, "`offset_share` must be a finite number from 0 on"),
+        ({"method": "increments", "dead_zone": -1}, pyhysteron.CoreError, "`dead_zone` must be"),
+        ({"method": "increments", "leakage": 1.1}, pyhysteron.CoreError, "`leakage` must be from 0 to 1"),
         ({"movement": float("inf")}, pyhysteron.CoreError, "`movement` must be"),
-        ({"method": "gradient", "trial": 0}, pyhysteron.CoreError, "`trial` must be 1 or more"),
+        ({"method": "increments", "trial": 0}, pyhysteron.CoreError, "`trial` must be 1 or more"),
         ({"gate": 1}, pyhysteron.CoreError, "`gate` must be a finite number from 2 on, or 0"),
         ({"burst": 0}, pyhysteron.CoreError, "`burst` must be 1 or more"),
         ({"burst": -1}, ValueError, "`burst` is -1: a whole number"),
-        ({"method": "gradient", "trial": -1}, ValueError, "`trial` is -1: a whole number"),
+        ({"method": "increments", "trial": -1}, ValueError, "`trial` is -1: a whole number"),
         ({"ridge": 0}, pyhysteron.FitError, "`ridge` must be above 0 and up to 1"),
         ({"every": 0}, pyhysteron.FitError, "`every` must be 1 or more"),
         ({"window": "days:3"}, pyhysteron.FitError, "`window` is `days:3`: it must be cycles:1 to"),
         ({"window": 3}, TypeError, "`window` is 3: a text is needed"),
-        ({"trial": 3}, pyhysteron.FitError, "`trial` means nothing to this method"),
-        ({"noise": 1.0}, pyhysteron.FitError, "`noise` means nothing to this method"),
-        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'refit'"),
+        ({"trial": 3}, pyhysteron.FitError, "`trial` is an option of"),
+        ({"noise": 1.0}, pyhysteron.FitError, "`noise` is an option of"),
+        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'fixed', 'refit'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
         ({"gian": 0.3}, TypeError, "there is no argument `gian`"),
-        ({"method": "gradient", "gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),
+        ({"method": "increments", "gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),
     ],
 )
 def test_options_that_are_refused(options, error, text):
@@ -208,7 +209,7 @@ def test_samples_that_are_refused():
 
 
 def test_threads_may_share_one():
-    adaptive = pyhysteron.Adaptive(model(), method="gradient", gain=0.1)
+    adaptive = pyhysteron.Adaptive(model(), method="increments", gain=0.1)
     measured = model(1.4).simulate(TEMPERATURE)
 
     def work(kind):
@@ -267,8 +268,8 @@ def test_adapt_takes_what_numpy_takes():
         (([1.0, 2.0], [1.0, 2.0]), {"time": [1.0, 0.0]}, pyhysteron.RecordingError, "goes back after sample 0"),
         (([1.0, 2.0], [[1.0], [2.0]]), {}, ValueError, "`output`: one dimension"),
         (([1j, 2.0], [1.0, 2.0]), {}, TypeError, "`input`: real numbers"),
-        (([1.0, 2.0], [1.0, 2.0]), {"method": "gradient", "gain": 3}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
-        (([1.0, 2.0], [1.0, 2.0]), {"load": 3.0}, pyhysteron.FitError, "`load` means nothing"),
+        (([1.0, 2.0], [1.0, 2.0]), {"method": "increments", "gain": 3}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
+        (([1.0, 2.0], [1.0, 2.0]), {"load": 3.0}, pyhysteron.FitError, "`load`: this model does not depend on a load"),
         (([1.0, 2.0], [1.0, 2.0]), {"start": "hot"}, ValueError, "`start` is 'hot'"),
     ],
 )

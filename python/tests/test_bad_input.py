@@ -139,7 +139,7 @@ WHOLE = {
     "load_degree": lambda n: pyhysteron.fit(RECORDING, levels=2, load_degree=n),
     "bootstrap": lambda n: pyhysteron.fit(RECORDING, levels=2, bootstrap=n),
     "sign": lambda n: pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=n),
-    "trial": lambda n: pyhysteron.Adaptive(MODEL, method="gradient", trial=n),
+    "trial": lambda n: pyhysteron.Adaptive(MODEL, method="increments", trial=n),
     "burst": lambda n: pyhysteron.Adaptive(MODEL, burst=n),
     "seeds": lambda n: pyhysteron.track("sine", seeds=n),
     "begin": lambda n: pyhysteron.control.Pid.from_step([0.0, 1.0], n, 1.0, 0.1),

@@ -116,7 +116,7 @@ def test_a_closed_loop_with_a_pid(model):
 
 def test_an_adaptive_loop(model):
     truth = pyhysteron.Model(1.4 * model.weights, model.range, offset=2.0, sign=model.sign)
-    offline = pyhysteron.Adaptive(model, method="gradient", gain=0.5)
+    offline = pyhysteron.Adaptive(model, method="increments", gain=0.5)
     wanted = reference(model)
     block = blocks.adaptive_block(offline, DT)
     plant = blocks.model_block(truth, DT, inputs=["command"], outputs=["output"])

@@ -54,7 +54,7 @@ def test_there_is_no_such_attribute():
         (lambda: pyhysteron.left_out(INPUT, INPUT, smoth=3), TypeError, "`smooth`"),
         (lambda: pyhysteron.prepare(INPUT, INPUT, lowpass=3), TypeError, "`low_pass`"),
         (lambda: pyhysteron.adapt(MODEL, INPUT, INPUT, forgeting=3), TypeError, "`forgetting`"),
-        (lambda: pyhysteron.Adaptive(MODEL, method="gradeint"), ValueError, "'gradient'"),
+        (lambda: pyhysteron.Adaptive(MODEL, method="incremnets"), ValueError, "'increments'"),
         (lambda: pyhysteron.Adaptive(MODEL, gian=0.1), TypeError, "`gain`"),
         (lambda: pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), ofset=1), TypeError, "`offset`"),
         (lambda: pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), operator="mpk"), ValueError, "'mkp'"),

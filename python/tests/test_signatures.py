@@ -15,7 +15,7 @@ SERIES = 50 - 30 * np.cos(np.linspace(1, 21, 200))
 OUTPUT, LOAD = np.sqrt(SERIES) * np.repeat([1.0, 1.1], 100), np.repeat([0.0, 1.0], 100)
 RECORDING = pyhysteron.Recording(SERIES, np.sqrt(SERIES), time=np.arange(200.0) ** 1.1)  # not even
 METHODS = {
-    "gain": "gradient",
+    "gain": "increments",
     "span": "increments",
     "correlation": "least-squares",
     **dict.fromkeys(["forgetting", "noise", "spread"], "drift"),
@@ -94,7 +94,7 @@ def test_of_the_options_of_an_estimator(call):
     names = [option.name for option in options(call)]
     assert len(names) == (21 if call is pyhysteron.adapt else 19)
     for name in set(names) - {"method", "start", "time", "progress"}:
-        method = METHODS.get(name, "gradient")
+        method = METHODS.get(name, "increments")
         call(*arguments, method=method, **{name: None})
         if name != "load":
             call(*arguments, method=method, **{name: {"gate": 2, "window": "cycles:2"}.get(name, 1)})

@@ -277,11 +277,6 @@
 #define HYSTERON_START_ON 2
 
 /**
- * Method of adaptation: normalised gradient.
- */
-#define HYSTERON_GRADIENT 0
-
-/**
  * Method of adaptation: normalised gradient on increments.
  */
 #define HYSTERON_INCREMENTS 1
@@ -338,7 +333,7 @@
  */
 typedef struct HysteronAdaptation {
   /**
-   * `HYSTERON_GRADIENT`, `HYSTERON_INCREMENTS` or `HYSTERON_LEAST_SQUARES`.
+   * `HYSTERON_INCREMENTS` or `HYSTERON_LEAST_SQUARES`.
    */
   int32_t method;
   /**
@@ -346,7 +341,7 @@ typedef struct HysteronAdaptation {
    */
   uint32_t trial;
   /**
-   * Gradient and increments: fraction of the error that a sample removes, above 0 and below 2.
+   * Increments: fraction of the error that an increment removes, above 0 and below 2.
    */
   double gain;
   /**

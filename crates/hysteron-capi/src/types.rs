@@ -39,8 +39,6 @@ pub const HYSTERON_START_OFF: i32 = 1;
 /// Start of a state: every operator on.
 pub const HYSTERON_START_ON: i32 = 2;
 
-/// Method of adaptation: normalised gradient.
-pub const HYSTERON_GRADIENT: i32 = 0;
 /// Method of adaptation: normalised gradient on increments.
 pub const HYSTERON_INCREMENTS: i32 = 1;
 /// Method of adaptation: recursive least squares with regularised forgetting.
@@ -127,11 +125,11 @@ pub struct HysteronModelNeeds {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronAdaptation {
-    /// `HYSTERON_GRADIENT`, `HYSTERON_INCREMENTS` or `HYSTERON_LEAST_SQUARES`.
+    /// `HYSTERON_INCREMENTS` or `HYSTERON_LEAST_SQUARES`.
     pub method: i32,
     /// Samples learned from after which weights are compared with the last good ones, from 1.
     pub trial: u32,
-    /// Gradient and increments: fraction of the error that a sample removes, above 0 and below 2.
+    /// Increments: fraction of the error that an increment removes, above 0 and below 2.
     pub gain: f64,
     /// Increments: levels from the start of an increment to its end, 1/8 to 8.
     pub span: f64,
@@ -219,7 +217,6 @@ impl HysteronAdaptation {
             ..
         } = self;
         let method = match self.method {
-            HYSTERON_GRADIENT => Method::Gradient { gain },
             HYSTERON_INCREMENTS => Method::Increments { gain, span },
             HYSTERON_LEAST_SQUARES => Method::LeastSquares {
                 forgetting,

@@ -167,11 +167,7 @@ fn nothing_is_allocated_over_the_callers_memory() {
         learner(adaptive);
     }
     let model = parsed(PLAIN);
-    for method in [
-        HYSTERON_GRADIENT,
-        HYSTERON_INCREMENTS,
-        HYSTERON_LEAST_SQUARES,
-    ] {
+    for method in [HYSTERON_INCREMENTS, HYSTERON_LEAST_SQUARES] {
         // SAFETY: all fields are numbers.
         let (mut options, mut adaptive) = (unsafe { std::mem::zeroed() }, 0);
         // SAFETY: live memory of the sizes given.

@@ -14,11 +14,7 @@ use std::ptr::null_mut;
 const ROOMS: usize = 4;
 /// Bytes of each, enough for any object here.
 const ROOM: usize = 8192;
-const METHODS: [i32; 3] = [
-    HYSTERON_GRADIENT,
-    HYSTERON_INCREMENTS,
-    HYSTERON_LEAST_SQUARES,
-];
+const METHODS: [i32; 2] = [HYSTERON_INCREMENTS, HYSTERON_LEAST_SQUARES];
 
 /// What a handle stands for: the same object in the library.
 #[allow(clippy::large_enum_variant, reason = "there are four")]
@@ -203,7 +199,6 @@ impl World {
 
 fn core_options(options: &HysteronAdaptation) -> Adaptation<f64> {
     let method = match options.method {
-        HYSTERON_GRADIENT => Method::Gradient { gain: options.gain },
         HYSTERON_INCREMENTS => Method::Increments {
             gain: options.gain,
             span: options.span,

@@ -36,7 +36,12 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         load: None,
     };
     let recordings = recording::segments(&args.data, columns, &args.repair)?;
-    let mut adapted = hysteron::adapt(&model, &recordings, &args.into(), hysteron::Progress::NONE)?;
+    let mut adapted = hysteron::adapt(
+        &model,
+        &recordings,
+        &args.options()?,
+        hysteron::Progress::NONE,
+    )?;
     if let Some(adapted) = adapted
         .model
         .fit
@@ -217,6 +222,7 @@ fn to_text(
             counts.at_rest,
             counts.rejected
         ),
+        EstimatorOptions::Fixed => "nothing learns".into(),
         EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => format!(
             "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
              readings rejected, {} times rolled back",

@@ -5,7 +5,7 @@
 mod common;
 mod measure;
 
-use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, options, rng, weights};
+use common::{INCREMENTS, LEAST_SQUARES, Learner, build, options, rng, weights};
 use hysteron_core::{
     Adaptation, Estimator, Method, Operator, estimator_len_of_basis, operator_count,
 };
@@ -84,7 +84,6 @@ fn main() {
             let name = format!("{name} / definition, K = {levels}");
             ratio(&name, "", work, definition(levels, &smooth[..2000]));
         };
-        against("gradient", &mut learning(GRADIENT, levels, &smooth[..5000]));
         against(
             "increments",
             &mut learning(INCREMENTS, levels, &smooth[..20_000]),

@@ -137,16 +137,12 @@ fn main() -> Result<(), Error> {
         "| method | K | error, hour 1 / 12 / 24, % of range | error of weights (mean 0.5; 0.29 off-line) | smallest weight | largest offset, % | worst return of the inverse | learned from | rolled back | bytes |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
-    let gradient = Method::Gradient { gain: 0.1 };
-    day("none: off-line", gradient, 20, false)?;
-    day("gradient", gradient, 20, true)?;
-    let span = 1.0;
-    day(
-        "increments",
-        Method::Increments { gain: 0.1, span },
-        20,
-        true,
-    )?;
+    let increments = Method::Increments {
+        gain: 0.1,
+        span: 1.0,
+    };
+    day("none: off-line", increments, 20, false)?;
+    day("increments", increments, 20, true)?;
     let least_squares = |forgetting| Method::LeastSquares {
         forgetting,
         noise: 0.2,

@@ -18,7 +18,7 @@ pub(crate) fn range_of(option: &str) -> &'static str {
         "trial" | "burst" => "1 or more",
         "reach" => "a finite number above 0",
         "gate" => "a finite number from 2 on, or 0 for none",
-        "method" => "gradient or least squares where the coefficients of a basis are adapted",
+        "method" => "least squares where the coefficients of a basis are adapted",
         "coefficients" => "finite numbers from 0 on, at least one",
         _ => "a finite number from 0 on",
     }

@@ -1,28 +1,14 @@
 #include "hysteron_mcu_adapt.h"
+#include "hysteron_mcu_guards.h"
 #include "hysteron_mcu_internal.h"
 
 #define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
 
-/* Of the gate: length of the running mean in samples, and the numbers by which the range is divided
- * for the scale at the start and for the smallest scale. */
-#define MEMORY 64u
-#define AT_START 50u
-#define LEAST 1000u
-
-/* Of the watch: the numbers of pieces, and of readings in each; how much narrower the span of a
- * channel that stands still is; and the numbers by which the range is divided for a piece, for moves
- * that are noise, and for spans that say something, and the plane's width for a wide motion. */
-#define PIECES 4u
-#define READINGS 4u
-#define STILL 5u
-#define PIECE 2u
-#define NOISE 16u
-#define FAR_PIECE 8u
-#define FAR_ALL 4u
-#define WIDE 2u
-
 /* Number of running sums of a long sum. The rounding of the library depends on it. */
 #define LANES 8u
+
+/* A sample leads at most one negative weight back to zero for each of so many parameters. */
+#define PARAMETERS_PER_STEP 4u
 
 static size_t operators(const hys_adaptive *self)
 {
@@ -35,6 +21,12 @@ static size_t operator_index(size_t i, size_t j)
     return j * (j - 1u) / 2u + (i - 1u);
 }
 
+/* Index of element (a, b) in the lower triangle of a symmetric matrix, row by row. */
+static size_t packed(size_t a, size_t b)
+{
+    return a < b ? operator_index(a + 1u, b + 1u) : operator_index(b + 1u, a + 1u);
+}
+
 static void copy(hys_real *to, const hys_real *from, size_t count)
 {
     size_t n;
@@ -43,160 +35,50 @@ static void copy(hys_real *to, const hys_real *from, size_t count)
     }
 }
 
-/* ---- Watch ---- */
-
-static hys_real size_of(hys_real x)
-{
-    return hys_max(x, -x);
-}
-
-static void begin_piece(hys_piece *piece, const hys_real *reading)
+static void fill(hys_real *to, hys_real value, size_t count)
 {
     size_t n;
-    for (n = 0u; n < 3u; n++) {
-        piece->low[n] = reading[n];
-        piece->high[n] = reading[n];
-    }
-    piece->travel = ZERO;
-    piece->readings = 0u;
-    piece->begun = 1u;
-}
-
-/* Widens the spans of a piece by those of another one. */
-static void widen(hys_piece *piece, const hys_real *low, const hys_real *high)
-{
-    size_t n;
-    for (n = 0u; n < 3u; n++) {
-        piece->low[n] = hys_min(piece->low[n], low[n]);
-        piece->high[n] = hys_max(piece->high[n], high[n]);
+    for (n = 0u; n < count; n++) {
+        to[n] = value;
     }
 }
 
-static hys_real span(const hys_piece *piece, size_t n)
+/* The change of an operator's output while its state goes from 0 to 1. */
+static hys_real stroke(const hys_adaptive *self)
 {
-    return piece->high[n] - piece->low[n];
+    return self->model.kind == MKP ? ONE : number(2u);
 }
 
-static int is_still(const hys_piece *piece)
+/* The amount of an error beyond the dead zone. */
+static hys_real beyond(const hys_adaptive *self, hys_real error)
 {
-    return span(piece, 1u) * number(STILL) < span(piece, 0u);
+    hys_real zone = self->options.dead_zone;
+    return error - hys_clamp(error, -zone, zone);
 }
 
-/* Copied member by member, because a copy of the whole struct may become a call of memcpy. */
-static void copy_piece(hys_piece *to, const hys_piece *from)
+/* The sum of products of as many numbers as there are parameters. */
+static hys_real dot(const hys_real *a, const hys_real *b, size_t count)
 {
-    size_t n;
-    for (n = 0u; n < 3u; n++) {
-        to->low[n] = from->low[n];
-        to->high[n] = from->high[n];
+    hys_real sums[LANES], sum = ZERO;
+    size_t n, even = count / LANES * LANES;
+    fill(sums, ZERO, LANES);
+    for (n = 0u; n < even; n++) { /* at most as many iterations as parameters */
+        sums[n % LANES] += a[n] * b[n];
     }
-    to->travel = from->travel;
-    to->readings = from->readings;
-    to->begun = from->begun;
-}
-
-/* What a piece that ends says: whether both channels moved in it, whether over all pieces one moved
- * there and back while the other one stood still, and how far the position moved in the piece and
- * over all. */
-typedef struct {
-    int ended, alive, still;
-    hys_real moves, moved;
-} hys_ended;
-
-static void look_along(hys_trail *trail, const hys_real *reading, hys_real range, hys_ended *says)
-{
-    hys_piece *piece = trail->pieces;
-    hys_piece all;
-    hys_real step, travel = ZERO, far;
-    size_t n, begun = 0u;
-    says->ended = 0;
-    if (!piece->begun) {
-        trail->anchor = reading[0];
-        begin_piece(piece, reading);
-        return;
+    for (n = 0u; n < LANES; n++) {
+        sum += sums[n];
     }
-    step = size_of(reading[0] - trail->anchor);
-    if (step >= range / number(NOISE)) {
-        trail->anchor = reading[0];
-        piece->travel += step;
+    for (n = even; n < count; n++) { /* less than LANES iterations */
+        sum += a[n] * b[n];
     }
-    widen(piece, reading, reading);
-    piece->readings += piece->readings < UINT32_MAX ? 1u : 0u;
-    if (piece->travel < range / number(PIECE) || piece->readings < READINGS) {
-        return;
-    }
-    copy_piece(&all, piece);
-    for (n = 0u; n < PIECES; n++) { /* PIECES iterations */
-        if (trail->pieces[n].begun) {
-            begun++;
-            travel += trail->pieces[n].travel;
-            widen(&all, trail->pieces[n].low, trail->pieces[n].high);
-        }
-    }
-    far = span(&all, 0u);
-    says->ended = 1;
-    says->alive = span(piece, 0u) >= range / number(FAR_PIECE) && !is_still(piece);
-    says->still = begun == PIECES && travel >= far + far * (ONE / number(2u)) &&
-                  far >= range / number(FAR_ALL) && is_still(&all);
-    says->moves = span(piece, 2u);
-    says->moved = span(&all, 2u);
-    for (n = PIECES - 1u; n > 0u; n--) { /* less than PIECES iterations */
-        copy_piece(trail->pieces + n, trail->pieces + (n - 1u));
-    }
-    begin_piece(piece, reading);
-}
-
-static void restart_watch(hys_watch *watch)
-{
-    size_t n;
-    for (n = 0u; n < PIECES; n++) {
-        watch->output.pieces[n].begun = 0u;
-        watch->input.pieces[n].begun = 0u;
-    }
-    watch->output.anchor = ZERO;
-    watch->input.anchor = ZERO;
-    watch->last = ZERO;
-    watch->stuck = 0;
-}
-
-/* Looks at a reading; `watch->stuck` becomes what stands still. Where a piece of the output ends and
- * nothing is stuck, returns 1, and 2 if both channels moved in it. Otherwise returns 0. */
-static int look(hys_watch *watch, hys_real position, hys_real expected, hys_real measured, int believed)
-{
-    hys_real half = ONE / number(2u), step = measured - watch->last, reading[3];
-    hys_ended output, input;
-    int alive, returns, same = size_of(step) < watch->range / number(NOISE);
-    watch->last = measured;
-    if (!(believed || same)) {
-        return 0;
-    }
-    reading[0] = expected;
-    reading[1] = measured;
-    reading[2] = position;
-    look_along(&watch->output, reading, watch->range, &output);
-    reading[0] = measured;
-    reading[1] = expected;
-    look_along(&watch->input, reading, watch->range, &input);
-    alive = output.ended && output.alive;
-    returns = input.ended && input.moves >= half;
-    if ((watch->stuck == HYS_OUTPUT_STUCK && !alive) || (watch->stuck == HYS_INPUT_STUCK && !(alive || returns))) {
-        return 0;
-    }
-    watch->stuck = 0;
-    if (output.ended && output.still && output.moved >= watch->width / number(WIDE)) {
-        watch->stuck = HYS_OUTPUT_STUCK;
-    } else if (input.ended && input.still && input.moved < half) {
-        watch->stuck = HYS_INPUT_STUCK;
-    }
-    return watch->stuck != 0 || !output.ended ? 0 : (alive ? 2 : 1);
+    return sum;
 }
 
 /* Starts the watch again, from the present parameters. */
 static void watch_anew(hys_adaptive *self)
 {
-    size_t count = operators(self) + 1u;
-    copy(self->trusted, self->theta, count);
-    copy(self->pending, self->theta, count);
+    copy(self->trusted, self->theta, self->parameters);
+    copy(self->pending, self->theta, self->parameters);
     self->expected = ZERO;
     restart_watch(&self->watch);
 }
@@ -245,7 +127,7 @@ static void follow(hys_adaptive *self, hys_real from, hys_real to)
             }
         }
     }
-    self->expected += (model->kind == MKP ? ONE : number(2u)) * change;
+    self->expected += stroke(self) * change;
 }
 
 /* Whether the operators' states belong to the present position and branch of the state. */
@@ -271,225 +153,186 @@ static void see(hys_adaptive *self)
 static void align(hys_adaptive *self)
 {
     const hys_state *state = &self->state;
-    size_t i, j, n, count = operators(self);
-    for (n = 0u; n < count; n++) {
-        self->gamma[n] = ZERO;
-    }
-    for (n = START + 1u; n <= state->top + 1u; n++) { /* at most 4K + 3 iterations */
-        hys_real x = n <= state->top ? state->turns[n].x : state->x;
-        for (j = 1u; j <= self->model.levels; j++) { /* K iterations */
-            for (i = 1u; i <= j; i++) { /* at most K iterations */
-                hys_real *gamma = self->gamma + operator_index(i, j);
-                *gamma = hys_max(ridge(x, j), hys_min(*gamma, ridge(x, i)));
+    size_t i, j, n;
+    if (self->gamma != NULL) {
+        fill(self->gamma, ZERO, operators(self));
+        for (n = START + 1u; n <= state->top + 1u; n++) { /* at most 4K + 3 iterations */
+            hys_real x = n <= state->top ? state->turns[n].x : state->x;
+            for (j = 1u; j <= self->model.levels; j++) { /* K iterations */
+                for (i = 1u; i <= j; i++) { /* at most K iterations */
+                    hys_real *gamma = self->gamma + operator_index(i, j);
+                    *gamma = hys_max(ridge(x, j), hys_min(*gamma, ridge(x, i)));
+                }
             }
         }
     }
     self->learned = state->x;
+    self->under_way = 0u;
     watch_anew(self);
 }
 
-/* ---- Weights and table ---- */
-
-/* The derivative of the output with respect to parameter n: the output of its operator, or the
- * offset's share. */
-static hys_real regressor(const hys_adaptive *self, size_t n, size_t count)
-{
-    hys_real gamma;
-    if (n == count) {
-        return self->options.offset_share;
-    }
-    gamma = self->gamma[n];
-    return self->model.kind == MKP ? gamma : gamma + gamma - ONE;
-}
-
-/* The sum of parameters times regressor. For NULL, the sum of the squares of the regressor. */
-static hys_real dot(const hys_adaptive *self, const hys_real *parameters)
-{
-    hys_real sums[LANES], sum = ZERO;
-    size_t n, count = operators(self), even = (count + 1u) / LANES * LANES;
-    for (n = 0u; n < LANES; n++) {
-        sums[n] = ZERO;
-    }
-    for (n = 0u; n < even; n++) { /* at most N + 1 iterations */
-        hys_real phi = regressor(self, n, count);
-        sums[n % LANES] += (parameters != NULL ? parameters[n] : phi) * phi;
-    }
-    for (n = 0u; n < LANES; n++) {
-        sum += sums[n];
-    }
-    for (n = even; n <= count; n++) { /* less than LANES iterations */
-        hys_real phi = regressor(self, n, count);
-        sum += (parameters != NULL ? parameters[n] : phi) * phi;
-    }
-    return sum;
-}
+/* ---- Parameters and table ---- */
 
 /* The offset without sign. */
 static hys_real offset_of(const hys_adaptive *self)
 {
-    return self->offset + self->options.offset_share * self->theta[operators(self)];
+    return self->offset + self->options.offset_share * self->theta[self->parameters - 1u];
 }
 
-/* Writes the table, and what depends on it, from the weights. */
+/* Computes row p of a table from the row above it. */
+static void fill_row(const hys_adaptive *self, size_t p, const hys_real *above, hys_real *row)
+{
+    const hys_real *weights = self->theta + operator_index(1u, p);
+    hys_real sum = ZERO;
+    size_t q;
+    row[p] = ZERO;
+    for (q = p; q-- > 0u;) { /* at most K iterations */
+        sum += weights[q];
+        row[q] = above[q] + sum;
+    }
+}
+
+/* What the model has of its table. */
+static void take(hys_adaptive *self, hys_real *table)
+{
+    self->table = table;
+    self->model.table = table;
+    self->model.total = table[table_index(self->model.levels, 0u)];
+    self->model.rounding = number(4u) * EPSILON * self->model.total;
+    self->renewed = 1u;
+}
+
+/* Writes the table from the parameters. */
 static void rewrite(hys_adaptive *self)
 {
-    hys_model *model = &self->model;
     hys_real *row = self->table;
-    size_t p, q;
+    size_t p, q, n;
     row[0] = ZERO;
-    for (p = 1u; p <= model->levels; p++) { /* K iterations */
-        const hys_real *above = row, *weights = self->theta + operator_index(1u, p);
-        hys_real sum = ZERO;
+    for (p = 1u; p <= self->model.levels; p++) { /* K iterations */
+        const hys_real *above = row;
         row += p;
-        row[p] = ZERO;
-        for (q = p; q-- > 0u;) { /* at most K iterations */
-            sum += weights[q];
-            row[q] = above[q] + sum;
+        if (self->basis == NULL) {
+            fill_row(self, p, above, row);
+            continue;
+        }
+        fill(row, ZERO, p + 1u);
+        for (n = 0u; n < self->basis->count; n++) { /* as many iterations as coefficients */
+            const hys_real *member = self->basis->tables + n * self->basis->length + table_index(p, 0u);
+            for (q = 0u; q <= p; q++) { /* at most K + 1 iterations */
+                row[q] += self->theta[n] * member[q];
+            }
         }
     }
-    model->total = row[0];
-    model->rounding = number(4u) * EPSILON * model->total;
-    model->offset = model->falls ? -offset_of(self) : offset_of(self);
+    take(self, self->table);
+    self->rows_due = 0u;
 }
 
-static void clear_trial(hys_adaptive *self)
+/* Writes the next row of the second table. After the last row the model uses it. Returns 1 then, 0
+ * before, and -1 where the weights overflow. */
+static int renew_row(hys_adaptive *self)
 {
-    self->now_squares = ZERO;
-    self->candidate_squares = ZERO;
-    self->good_squares = ZERO;
-    self->rounding_squares = ZERO;
-    self->samples = 0u;
+    hys_real *above, *row, *now = self->table;
+    self->other[0] = ZERO;
+    above = self->other + table_index(self->renewed - 1u, 0u);
+    row = above + self->renewed;
+    fill_row(self, self->renewed, above, row);
+    if (!is_finite(row[0] + row[0])) {
+        self->renewed = 1u;
+        return -1;
+    }
+    self->renewed += 1u;
+    if (self->renewed <= self->model.levels) {
+        return 0;
+    }
+    take(self, self->other);
+    self->other = now;
+    return 1;
+}
+
+static void clear_trial(hys_trial *trial)
+{
+    trial->now = ZERO;
+    trial->candidate = ZERO;
+    trial->good = ZERO;
+    trial->rounding = ZERO;
+    trial->samples = 0u;
+}
+
+static void clear_trials(hys_adaptive *self)
+{
+    clear_trial(&self->trial);
+    clear_trial(&self->level);
+}
+
+/* Restarts estimate and covariance from the present parameters, after these were replaced. */
+static void restart_estimate(hys_adaptive *self)
+{
+    size_t count = self->parameters;
+    if (self->estimate != NULL) {
+        copy(self->covariance, self->start, count * (count + 1u) / 2u);
+        copy(self->estimate, self->theta, count);
+    }
 }
 
 static void take_back(hys_adaptive *self)
 {
-    size_t count = operators(self) + 1u;
-    copy(self->theta, self->good, count);
-    copy(self->candidate, self->good, count);
-    clear_trial(self);
-}
-
-/* ---- Gate ---- */
-
-static void restart(hys_gate *gate)
-{
-    gate->scale = gate->range / number(AT_START);
-    gate->left = ZERO;
-    gate->last = ZERO;
-    gate->refused = 0u;
-    gate->agreeing = 0u;
-}
-
-static void rescale(hys_gate *gate, hys_real scale)
-{
-    if (is_finite(scale)) {
-        gate->scale = hys_max(scale, gate->range / number(LEAST));
-    }
-}
-
-static void believe(hys_gate *gate, hys_real scale)
-{
-    gate->refused = 0u;
-    gate->agreeing = 0u;
-    rescale(gate, scale);
-}
-
-/* Whether two surprises may come from one jump: they differ by at most half of the larger one. */
-static int agree(hys_real a, hys_real b)
-{
-    return size_of(a - b) <= ONE / number(2u) * hys_max(size_of(a), size_of(b));
-}
-
-/* Whether a reading whose prediction has this error is accepted. */
-static int believes(hys_gate *gate, hys_real error, const hys_adapt_options *options)
-{
-    hys_real surprise = error - gate->left, size = size_of(surprise);
-    if (options->gate == ZERO) {
-        return 1;
-    }
-    if (size <= options->gate * gate->scale || gate->scale == ZERO) {
-        believe(gate, gate->scale + (size - gate->scale) / number(MEMORY));
-        return 1;
-    }
-    gate->agreeing = gate->agreeing > 0u && agree(surprise, gate->last) ? gate->agreeing + 1u : 1u;
-    gate->refused += 1u;
-    gate->last = surprise;
-    if (gate->agreeing >= options->burst) {
-        believe(gate, size);
-        return 1;
-    }
-    if (gate->refused >= options->burst) {
-        gate->refused = 0u;
-        rescale(gate, gate->scale + gate->scale);
-    }
-    return 0;
-}
-
-/* Keeps the error that is left after an accepted reading. */
-static void settle(hys_gate *gate, hys_real left)
-{
-    gate->left = is_finite(left) ? left : ZERO;
+    copy(self->theta, self->good, self->parameters);
+    copy(self->candidate, self->good, self->parameters);
+    restart_estimate(self);
+    clear_trials(self);
 }
 
 /* ---- Learning ---- */
 
-/* Adds a sample to the trial. At its end the candidate becomes the good one if it predicted no
- * worse. Returns whether the good weights replaced the present ones, because these had more than
- * four times the mean square error. */
-static int judge(hys_adaptive *self, hys_real now, hys_real candidate, hys_real good, hys_real measured)
+/* Prediction errors of a sample, with the present, the candidate and the last good parameters. */
+typedef struct {
+    hys_real now, candidate, good;
+} hys_errors;
+
+/* Adds a sample to a trial of the parameters from `first` on. At its end the candidate becomes the
+ * good one if it predicted no worse. Returns whether the good parameters replaced the present ones,
+ * because these had more than four times the mean square error. */
+static int judge(hys_adaptive *self, hys_trial *trial, size_t first, size_t count, const hys_errors *errors,
+                 hys_real measured)
 {
-    hys_real rounding = number(256u) * EPSILON * measured;
-    size_t count = operators(self) + 1u;
-    self->now_squares += now * now;
-    self->candidate_squares += candidate * candidate;
-    self->good_squares += good * good;
-    self->rounding_squares += rounding * rounding;
-    self->samples += 1u;
-    if (self->samples < self->options.trial) {
+    hys_real rounding = number(256u) * EPSILON * measured, now, candidate, good;
+    trial->now += errors->now * errors->now;
+    trial->candidate += errors->candidate * errors->candidate;
+    trial->good += errors->good * errors->good;
+    trial->rounding += rounding * rounding;
+    trial->samples += 1u;
+    if (trial->samples < self->options.trial) {
         return 0;
     }
-    now = self->now_squares;
-    candidate = self->candidate_squares;
-    good = self->good_squares;
-    rounding = self->rounding_squares;
-    clear_trial(self);
+    now = trial->now;
+    candidate = trial->candidate;
+    good = trial->good;
+    rounding = trial->rounding;
+    clear_trial(trial);
     /* Sums that overflow give no answer: the outlier is in all of them. */
     if (candidate <= good && is_finite(candidate)) {
-        copy(self->good, self->candidate, count);
+        copy(self->good + first, self->candidate + first, count);
     }
     if (now > number(4u) * (hys_min(candidate, good) + rounding)) {
-        copy(self->theta, self->good, count);
-        copy(self->candidate, self->good, count);
+        copy(self->theta + first, self->good + first, count);
+        copy(self->candidate + first, self->good + first, count);
         return 1;
     }
-    copy(self->candidate, self->theta, count);
+    copy(self->candidate + first, self->theta + first, count);
     return 0;
 }
 
-/* Moves the parameters along the regressor by a fraction of the error. Weights stay at zero or
- * above. */
-static void update(hys_adaptive *self, hys_real error)
-{
-    size_t n, count = operators(self);
-    hys_real leakage = self->options.leakage;
-    hys_real step = self->options.gain * error / (self->floor + dot(self, NULL));
-    if (!is_finite(step)) {
-        return;
-    }
-    for (n = 0u; n <= count; n++) { /* N + 1 iterations */
-        hys_real theta = self->theta[n], offline = n < count ? self->offline[n] : ZERO;
-        theta = theta + step * regressor(self, n, count) + leakage * (offline - theta);
-        self->theta[n] = n < count ? hys_max(theta, ZERO) : theta;
-    }
-}
+#include "hysteron_mcu_increments.h"
+#include "hysteron_mcu_least_squares.h"
 
 /* Whether a channel stands still. If one begins to, the parameters from before return; the table is
  * not written. */
 static int find_stuck(hys_adaptive *self, hys_real measured, int believed)
 {
-    size_t count = operators(self) + 1u;
+    size_t count = self->parameters;
+    hys_real expected = self->basis == NULL ? self->expected : expected_by_basis(self);
     int already = self->watch.stuck;
-    int piece = look(&self->watch, self->state.x, self->expected, measured, believed);
+    int piece = look(&self->watch, self->state.x, expected, measured, believed);
     if (piece == 2) {
         copy(self->trusted, self->pending, count);
     }
@@ -501,36 +344,10 @@ static int find_stuck(hys_adaptive *self, hys_real measured, int believed)
         copy(self->pending, self->trusted, count);
         take_back(self);
         restart(&self->gate);
+        self->under_way = 0u;
         self->undone = 1u;
     }
     return self->watch.stuck;
-}
-
-static int learn(hys_adaptive *self, hys_real measured, hys_real error)
-{
-    hys_real rest = measured - self->offset, zone = self->options.dead_zone, counted;
-    hys_real candidate, good;
-    int believed = believes(&self->gate, error, &self->options);
-    if (self->options.gate > ZERO) {
-        int stuck = find_stuck(self, measured, believed);
-        if (stuck != 0) {
-            return stuck;
-        }
-    }
-    if (!believed) {
-        return HYS_REJECTED;
-    }
-    candidate = rest - dot(self, self->candidate);
-    good = rest - dot(self, self->good);
-    if (judge(self, error, candidate, good, measured)) {
-        return HYS_ROLLED_BACK;
-    }
-    counted = error - hys_clamp(error, -zone, zone);
-    if (counted == ZERO) {
-        return HYS_WAITING;
-    }
-    update(self, counted);
-    return HYS_LEARNED;
 }
 
 /* Whether the input moved since the last sample learned from. If not, the sample would be the same
@@ -543,6 +360,79 @@ static int moves(hys_adaptive *self)
         self->learned = self->state.x;
     }
     return moved;
+}
+
+/* Learns from a reading, if the input moved and the gate accepts it. `above` is the measured output
+ * less the operators' sum. */
+static int learn(hys_adaptive *self, hys_real measured, hys_real above)
+{
+    hys_real error = above - offset_of(self);
+    int by_rows = self->options.learner == HYS_INCREMENTS;
+    int moved = moves(self), ends, believed, found;
+    if (self->frozen) {
+        return HYS_FROZEN;
+    }
+    ends = by_rows && increment_ends(self);
+    if (!moved && !ends) {
+        return HYS_AT_REST;
+    }
+    believed = believes(&self->gate, error, &self->options);
+    if (self->options.gate > ZERO) {
+        found = find_stuck(self, measured, believed);
+        if (found != 0) {
+            return found;
+        }
+    }
+    if (!believed) {
+        self->under_way = 0u;
+        return HYS_REJECTED;
+    }
+    if (!by_rows) {
+        return learn_squares(self, measured, error);
+    }
+    moved = moved ? 1 + learn_level(self, measured, above) : 0;
+    found = ends ? learn_slope(self, measured) : HYS_WAITING;
+    if (moved == 2) {
+        return HYS_ROLLED_BACK;
+    }
+    return found == HYS_WAITING && moved == 0 ? HYS_AT_REST : found;
+}
+
+/* Updates the table from the parameters. Where it would not be finite, the last good parameters
+ * return. `*changed` tells whether the model changed. */
+static int renew(hys_adaptive *self, int found, int *changed)
+{
+    int by_rows = self->options.learner == HYS_INCREMENTS, undone = self->undone, row;
+    self->undone = 0u;
+    *changed = 1;
+    if (found == HYS_ROLLED_BACK || undone) {
+        rewrite(self);
+        return found;
+    }
+    if (found == HYS_LEARNED && !by_rows) {
+        rewrite(self);
+        if (is_finite(self->model.total + self->model.total) && is_finite(offset_of(self))) {
+            return found;
+        }
+    } else {
+        if (found == HYS_LEARNED) {
+            /* At most the rest of the pass under way, and one whole pass. */
+            self->rows_due = 2u * self->model.levels;
+        }
+        if (self->rows_due == 0u) {
+            *changed = 0;
+            return found;
+        }
+        self->rows_due -= 1u;
+        row = renew_row(self);
+        if (row >= 0) {
+            *changed = row;
+            return found;
+        }
+    }
+    take_back(self);
+    rewrite(self);
+    return HYS_ROLLED_BACK;
 }
 
 /* Copies the model without its weights. Member by member, because a copy of the whole struct may
@@ -564,6 +454,26 @@ static void inherit(hys_adaptive *self, const hys_model *from)
     model->inverse = 1u;
 }
 
+/* Member by member, as above. */
+static void copy_options(hys_adapt_options *to, const hys_adapt_options *from)
+{
+    to->basis = from->basis;
+    to->learner = from->learner;
+    to->trial = from->trial;
+    to->burst = from->burst;
+    to->gain = from->gain;
+    to->span = from->span;
+    to->forgetting = from->forgetting;
+    to->noise = from->noise;
+    to->spread = from->spread;
+    to->correlation = from->correlation;
+    to->offset_share = from->offset_share;
+    to->dead_zone = from->dead_zone;
+    to->leakage = from->leakage;
+    to->movement = from->movement;
+    to->gate = from->gate;
+}
+
 static int usable(const hys_adaptive *self)
 {
     if (self == NULL) {
@@ -572,92 +482,129 @@ static int usable(const hys_adaptive *self)
     return self->table == NULL || self->state.model != &self->model ? HYS_STATE_MISMATCH : HYS_OK;
 }
 
-void hys_adapt_defaults(hys_adapt_options *options)
-{
-    if (options != NULL) {
-        options->gain = number(30u) / number(100u);
-        options->offset_share = ONE;
-        options->dead_zone = ZERO;
-        options->leakage = ZERO;
-        options->movement = number(5u) / number(100u);
-        options->trial = 256u;
-        options->gate = number(12u);
-        options->burst = 8u;
-    }
-}
-
 static int from_zero(hys_real x)
 {
     return x >= ZERO && is_finite(x);
 }
 
-int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_real *weights, hys_real offset,
+/* Whether an option of least squares has a square that is a number, and is above zero. */
+static int has_square(hys_real x)
+{
+    return x > ZERO && x * x > ZERO && is_finite(x * x);
+}
+
+static int in_range(const hys_adapt_options *options)
+{
+    const hys_adapt_options *o = options;
+    if (!(from_zero(o->offset_share) && from_zero(o->dead_zone) && o->leakage >= ZERO && o->leakage <= ONE &&
+          from_zero(o->movement) && o->trial > 0u && o->burst > 0u &&
+          (o->gate == ZERO || (o->gate >= number(2u) && is_finite(o->gate))))) {
+        return 0;
+    }
+    switch (o->learner) {
+    case HYS_INCREMENTS:
+        return o->gain > ZERO && o->gain < number(2u) && o->span >= ONE / number(8u) && o->span <= number(8u);
+    case HYS_LEAST_SQUARES:
+    case HYS_DRIFT:
+        return o->forgetting > ZERO && o->forgetting <= ONE && has_square(o->noise) && has_square(o->spread) &&
+               (o->learner == HYS_DRIFT ? o->basis != NULL && o->correlation == ZERO : from_zero(o->correlation));
+    default:
+        return 0;
+    }
+}
+
+/* Divides `memory` into the arrays. Returns how many numbers they need; with NULL it only counts. */
+static size_t divide(hys_adaptive *self, size_t levels, const hys_adapt_options *options, hys_real *memory)
+{
+    size_t all = levels * (levels + 1u) / 2u, table = all + levels + 1u, used = 0u;
+    size_t weights = options->learner == HYS_DRIFT ? options->basis->count : all, count = weights + 1u;
+    int by_rows = options->learner == HYS_INCREMENTS;
+    size_t triangle = by_rows ? 0u : count * (count + 1u) / 2u, squares = by_rows ? 0u : count;
+    size_t states = options->learner == HYS_DRIFT ? 0u : all;
+#define NEXT(array, length)                                                         \
+    do {                                                                            \
+        if (memory != NULL) {                                                       \
+            self->array = (length) > 0u ? memory + used : NULL;                     \
+        }                                                                           \
+        used += (length);                                                           \
+    } while (0)
+    NEXT(table, table);
+    NEXT(other, by_rows ? table : 0u);
+    NEXT(theta, count);
+    NEXT(good, count);
+    NEXT(candidate, count);
+    NEXT(trusted, count);
+    NEXT(pending, count);
+    NEXT(gamma, states);
+    NEXT(anchor, by_rows ? all : 0u);
+    NEXT(phi, squares);
+    NEXT(initial, squares);
+    NEXT(covariance, triangle);
+    NEXT(start, triangle);
+    NEXT(step, squares);
+    NEXT(estimate, squares);
+#undef NEXT
+    if (memory != NULL) {
+        self->parameters = count;
+        self->basis = options->learner == HYS_DRIFT ? options->basis : NULL;
+    }
+    return used;
+}
+
+int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_real *parameters, hys_real offset,
                     const hys_adapt_options *options, hys_real *memory, size_t numbers, hys_turn *turns, size_t count)
 {
     hys_adaptive *self = adaptive;
     hys_real size = ZERO;
-    size_t n, levels, all, table;
-    if (self == NULL || model == NULL || weights == NULL || options == NULL || memory == NULL || turns == NULL) {
+    size_t n, levels, all;
+    if (self == NULL || model == NULL || parameters == NULL || options == NULL || memory == NULL || turns == NULL) {
         return HYS_NULL;
     }
     levels = model->levels;
-    all = levels * (levels + 1u) / 2u;
-    table = all + levels + 1u;
-    if (numbers < table + 5u * (all + 1u) + all || count < 4u * levels + 8u) {
-        return HYS_MEMORY_TOO_SMALL;
-    }
-    if (!(options->gain > ZERO && options->gain < number(2u) && from_zero(options->offset_share) &&
-          from_zero(options->dead_zone) && options->leakage >= ZERO && options->leakage <= ONE &&
-          from_zero(options->movement) && options->trial > 0u && options->burst > 0u &&
-          (options->gate == ZERO || (options->gate >= number(2u) && is_finite(options->gate))))) {
+    if (!in_range(options)) {
         return HYS_ADAPTATION;
+    }
+    if (numbers < divide(NULL, levels, options, NULL) || count < 4u * levels + 8u) {
+        return HYS_MEMORY_TOO_SMALL;
     }
     if (!is_finite(offset)) {
         return HYS_INPUT_NOT_FINITE;
     }
-    for (n = 0u; n < all; n++) { /* N iterations */
-        size += hys_max(weights[n], -weights[n]);
+    all = options->learner == HYS_DRIFT ? options->basis->count : levels * (levels + 1u) / 2u;
+    for (n = 0u; n < all; n++) { /* as many iterations as parameters */
+        size += hys_max(parameters[n], -parameters[n]);
         if (!is_finite(size + size)) {
             return HYS_WEIGHT_NOT_FINITE;
         }
     }
-    for (n = 0u; n < all; n++) { /* N iterations */
-        if (weights[n] < ZERO) {
+    for (n = 0u; n < all; n++) { /* as many iterations as parameters */
+        if (parameters[n] < ZERO) {
             return HYS_NEGATIVE_WEIGHTS;
         }
     }
-    self->table = memory;
-    self->theta = memory + table;
-    self->good = self->theta + (all + 1u);
-    self->candidate = self->good + (all + 1u);
-    self->trusted = self->candidate + (all + 1u);
-    self->pending = self->trusted + (all + 1u);
-    self->gamma = self->pending + (all + 1u);
-    self->options.gain = options->gain;
-    self->options.offset_share = options->offset_share;
-    self->options.dead_zone = options->dead_zone;
-    self->options.leakage = options->leakage;
-    self->options.movement = options->movement;
-    self->options.trial = options->trial;
-    self->options.gate = options->gate;
-    self->options.burst = options->burst;
-    self->offline = weights;
+    (void)divide(self, levels, options, memory);
+    copy_options(&self->options, options);
     inherit(self, model);
     self->offset = model->falls ? -offset : offset;
-    self->floor = number(all) / number(100u);
     self->aligned = 0u;
+    self->under_way = 0u;
     self->frozen = 0u;
     self->undone = 0u;
-    copy(self->theta, weights, all);
+    copy(self->theta, parameters, all);
     self->theta[all] = ZERO;
+    self->offline = parameters;
+    if (self->initial != NULL) {
+        copy(self->initial, self->theta, all + 1u);
+        self->offline = self->initial;
+    }
     copy(self->good, self->theta, all + 1u);
     copy(self->candidate, self->theta, all + 1u);
-    clear_trial(self);
+    start_covariance(self);
+    restart_estimate(self);
+    clear_trials(self);
     rewrite(self);
-    self->gate.range = self->model.total;
-    if (model->kind != MKP) {
-        self->gate.range += self->model.total;
-    }
+    self->model.offset = offset;
+    self->gate.range = stroke(self) * self->model.total;
     restart(&self->gate);
     self->watch.range = self->gate.range;
     self->watch.width = number(levels);
@@ -670,8 +617,8 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
 int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hys_real *output, int *outcome)
 {
     hys_adaptive *self = adaptive;
-    hys_real from, own, offset, error, expected;
-    int found, moved, code = usable(self);
+    hys_real from, own, expected;
+    int found, changed, code = usable(self);
     if (code != HYS_OK) {
         return code;
     }
@@ -686,45 +633,29 @@ int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hy
     }
     from = self->state.x;
     (void)hys_step(&self->state, input, &expected);
-    follow(self, from, self->state.x);
+    if (self->gamma != NULL) {
+        follow(self, from, self->state.x);
+    }
     see(self);
     if (self->model.falls) {
         measured = -measured;
     }
     own = own_sum(&self->model, self->state.y);
-    offset = offset_of(self);
-    error = measured - own - offset;
-    moved = moves(self);
-    if (self->frozen) {
-        found = HYS_FROZEN;
-    } else {
-        found = moved ? learn(self, measured, error) : HYS_AT_REST;
-    }
-    if (found == HYS_LEARNED) {
-        rewrite(self);
-        if (!is_finite(self->model.total + self->model.total) || !is_finite(offset_of(self))) {
-            take_back(self);
-            found = HYS_ROLLED_BACK;
-        }
-    }
-    if (found == HYS_ROLLED_BACK || self->undone) {
-        rewrite(self);
-    }
-    if (found == HYS_LEARNED || found == HYS_ROLLED_BACK || self->undone) {
+    expected = own + offset_of(self);
+    found = renew(self, learn(self, measured, measured - own), &changed);
+    if (changed) {
         (void)hys_rebase(&self->state);
     }
-    self->undone = 0u;
-    if (found == HYS_LEARNED || found == HYS_WAITING || found == HYS_ROLLED_BACK || found == HYS_OUTPUT_STUCK ||
-        found == HYS_INPUT_STUCK) {
+    if (found != HYS_AT_REST && found != HYS_FROZEN && found != HYS_REJECTED) {
         settle(&self->gate, measured - own_sum(&self->model, self->state.y) - offset_of(self));
     }
-    expected = own + offset;
+    self->model.offset = self->model.falls ? -offset_of(self) : offset_of(self);
     *output = self->model.falls ? -expected : expected;
     *outcome = found;
     return HYS_OK;
 }
 
-const hys_real *hys_adapt_weights(const hys_adaptive *adaptive)
+const hys_real *hys_adapt_parameters(const hys_adaptive *adaptive)
 {
     return usable(adaptive) == HYS_OK ? adaptive->theta : NULL;
 }
@@ -734,6 +665,7 @@ int hys_adapt_freeze(hys_adaptive *adaptive, int frozen)
     int code = usable(adaptive);
     if (code == HYS_OK) {
         adaptive->frozen = frozen != 0 ? 1u : 0u;
+        adaptive->under_way = 0u;
         restart_watch(&adaptive->watch);
     }
     return code;
@@ -743,11 +675,10 @@ int hys_adapt_keep(hys_adaptive *adaptive)
 {
     int code = usable(adaptive);
     if (code == HYS_OK) {
-        size_t count = operators(adaptive) + 1u;
-        copy(adaptive->good, adaptive->theta, count);
-        copy(adaptive->candidate, adaptive->theta, count);
-        clear_trial(adaptive);
+        copy(adaptive->good, adaptive->theta, adaptive->parameters);
+        copy(adaptive->candidate, adaptive->theta, adaptive->parameters);
         watch_anew(adaptive);
+        clear_trials(adaptive);
     }
     return code;
 }
@@ -760,6 +691,7 @@ int hys_adapt_roll_back(hys_adaptive *adaptive)
         restart(&adaptive->gate);
         watch_anew(adaptive);
         rewrite(adaptive);
+        adaptive->model.offset = adaptive->model.falls ? -offset_of(adaptive) : offset_of(adaptive);
         (void)hys_rebase(&adaptive->state);
     }
     return code;

@@ -2,6 +2,7 @@
 
 mod algorithm;
 mod constants;
+mod learners;
 mod name;
 mod notation;
 mod real;
@@ -15,6 +16,7 @@ mod written;
 use algorithm::{ADAPTATION, ALGORITHM, STAGES};
 use constants::Constants;
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
+use learners::Learners;
 pub use real::CReal;
 use real::Number;
 pub use stages::CSampling;
@@ -41,8 +43,9 @@ pub struct COptions<'a> {
 /// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as
 /// `hysteron_mcu.h`, `.c` and `hysteron_mcu_inverse.c`, the same for every model of a number type,
 /// and the model's constants as files of its name. With [`COptions::adaptation`] also
-/// `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with
-/// [`hysteron_core::Method::Gradient`].
+/// `hysteron_mcu_adapt.h`, `.c` and what they include, by which the model follows the plant as with
+/// the learners [`hysteron::Learner::Increments`], `Drift` and `LeastSquares`, with the digits of
+/// [`hysteron_core::Estimator`].
 ///
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
 /// in that type as well. A model with negative weights has no inverse there either.
@@ -156,6 +159,12 @@ fn texts<T: Number>(
         let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
         return Err(Error::Export(what.into()).remedied(remedy));
     }
+    let learners = match options.adaptation {
+        true => Some(Learners::of(model, &constants)?),
+        false => None,
+    };
+    let learned = learners.as_ref().map(|learners| learners.text(&name));
+    let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
         (true, _) => &[&ALGORITHM, &ADAPTATION],
@@ -178,7 +187,7 @@ fn texts<T: Number>(
             .as_ref()
             .map_or_else(Vec::new, |stages| stages.names()),
         dt: sampling.dt,
-        memory: constants.memory(options.adaptation),
+        memory: constants.memory(learns),
         worst_case: CWorstCase::new(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
@@ -188,8 +197,9 @@ fn texts<T: Number>(
         format!("/* hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
-    texts.push(text::header(&export, &constants, model, options.source));
-    texts.push(text::source(&export, &constants));
+    let (source, learned) = (options.source, learned.as_ref());
+    texts.push(text::header(&export, &constants, model, source, learned));
+    texts.push(text::source(&export, &constants, learned));
     let sealed = texts.iter().map(|text| seal::sealed(text)).collect();
     Ok((export, sealed))
 }

@@ -15,9 +15,8 @@ const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
 /// Learners of weights.
-const LEARNERS: [(&str, Learner); 5] = [
+const LEARNERS: [(&str, Learner); 4] = [
     ("refit", Learner::Refit),
-    ("gradient", Learner::Gradient),
     ("increments", Learner::Increments),
     ("least squares", Learner::LeastSquares),
     ("drift", Learner::Drift),
@@ -41,10 +40,10 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     print!("\n{}", include_str!("text/adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!(
-        "| from → to, MPa | fixed | fitted | refit | gradient | increments | least squares | drift \
+        "| from → to, MPa | fixed | fitted | refit | increments | least squares | drift \
          | least squares, forgetting 1 |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {
         let loops = Loops::read(folder, material, stresses, output)?;
         for to in 1..stresses.len() {

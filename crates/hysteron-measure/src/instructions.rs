@@ -17,11 +17,10 @@ const SAMPLES: usize = 20_000;
 /// What was counted for earlier releases: release, task, levels, input, instructions.
 const EARLIER: &str = include_str!("text/instructions.csv");
 
-const TASKS: [Task; 6] = [
+const TASKS: [Task; 5] = [
     Task::new("run", "a sample of `Model::run`"),
     Task::new("step", "`Model::step`"),
     Task::new("inverse", "`Inverse::step`, exact inverse"),
-    Task::new("gradient", "`Adaptive::step`, gradient"),
     Task::new("increments", "`Adaptive::step`, increments"),
     Task::new("drift", "`Adaptive::step`, drift by least squares"),
 ];
@@ -149,7 +148,6 @@ fn work(task: &str, levels: usize, input: &str, samples: usize) -> Result<()> {
         }
         _ => {
             let learner = match task {
-                "gradient" => Learner::Gradient,
                 "increments" => Learner::Increments,
                 _ => Learner::Drift,
             };

@@ -27,6 +27,8 @@ pub(crate) struct Action {
     adapted: bool,
     /// Reading rejected: too far from what was expected to be learned from.
     rejected: bool,
+    /// A channel stands still while the other one moves, so the model does not learn.
+    stuck: bool,
 }
 
 impl From<control::Action> for Action {
@@ -42,6 +44,7 @@ impl From<control::Action> for Action {
             sensor_fault: action.status.sensor_fault,
             adapted: action.status.adapted,
             rejected: action.status.rejected,
+            stuck: action.status.stuck,
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::integer::Integer;
 use crate::learning::outcomes;
 use crate::model::Model;
 use crate::progress::with_progress;
-use hysteron::AdaptOptions;
+use hysteron::{ADAPT_OPTIONS, AdaptOptionKind, AdaptOptions, AdaptValue};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -73,7 +73,7 @@ impl Adapted {
 /// time : array_like, shape (n,), optional
 ///     As in `Recording`. Needed for a model that depends on time, otherwise only checked for going
 ///     back.
-/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments', 'load'}
+/// method : {'fixed', 'refit', 'drift', 'least-squares', 'increments', 'load'}
 ///     What learns; see `Adaptive`. 'refit' errs least on measured recordings. 'load' follows the
 ///     shift of the input axis alone, by a load that nobody measures, and runs any model; then the
 ///     table also has 'shift_model', in the input's unit, and 'load_model', if the model's shift
@@ -166,28 +166,6 @@ pub(crate) fn adapt<'py>(
     })
 }
 
-const OPTIONS: [&str; 19] = [
-    "method",
-    "start",
-    "window",
-    "every",
-    "ridge",
-    "gain",
-    "span",
-    "forgetting",
-    "noise",
-    "spread",
-    "correlation",
-    "offset_share",
-    "dead_zone",
-    "leakage",
-    "movement",
-    "trial",
-    "gate",
-    "burst",
-    "load",
-];
-
 /// The options of `Adaptive` and `adapt`. `names` are those that only `call` has.
 pub(crate) fn adapt_options(
     (call, names): (&str, &[&str]),
@@ -202,40 +180,26 @@ pub(crate) fn adapt_options(
     };
     for (name, value) in keywords.into_iter().flatten() {
         let name: String = name.extract()?;
-        if name == "window" {
-            let window: Option<String> = named(&name, "a text", &value)?;
-            options.window = window.map(|text| text.parse()).transpose().raise()?;
-            continue;
-        }
-        let counts = [
-            ("every", &mut options.every),
-            ("trial", &mut options.trial),
-            ("burst", &mut options.burst),
-        ];
-        if let Some((_, slot)) = counts.into_iter().find(|(slot, _)| *slot == name) {
-            let count: Option<Integer> = value.extract()?;
-            *slot = count.map(|count| count.convert(&name)).transpose()?;
-            continue;
-        }
-        let slots = [
-            ("ridge", &mut options.ridge),
-            ("gain", &mut options.gain),
-            ("span", &mut options.span),
-            ("forgetting", &mut options.forgetting),
-            ("noise", &mut options.noise),
-            ("spread", &mut options.spread),
-            ("correlation", &mut options.correlation),
-            ("offset_share", &mut options.offset_share),
-            ("dead_zone", &mut options.dead_zone),
-            ("leakage", &mut options.leakage),
-            ("movement", &mut options.movement),
-            ("gate", &mut options.gate),
-            ("load", &mut options.load),
-        ];
-        let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {
-            return Err(no_argument(call, &name, &[names, &OPTIONS].concat()));
+        let Some(option) = ADAPT_OPTIONS.iter().find(|option| option.name == name) else {
+            let own = ADAPT_OPTIONS.iter().map(|option| option.name);
+            let known = names.iter().copied().chain(["method", "start"]).chain(own);
+            return Err(no_argument(call, &name, &known.collect::<Vec<_>>()));
         };
-        *slot = named(&name, "a number", &value)?;
+        if value.is_none() {
+            continue;
+        }
+        let value = match option.kind {
+            AdaptOptionKind::Number => AdaptValue::Number(named(&name, "a number", &value)?),
+            AdaptOptionKind::Count => {
+                let count: Integer = value.extract()?;
+                AdaptValue::Count(count.convert(&name)?)
+            }
+            AdaptOptionKind::Window => {
+                let window: String = named(&name, "a text", &value)?;
+                option.kind.parse(&window).raise()?
+            }
+        };
+        options.set(&name, value).raise()?;
     }
     Ok(options)
 }

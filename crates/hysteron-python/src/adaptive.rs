@@ -1,6 +1,8 @@
 //! `Adaptive`.
 
 use crate::adapt::adapt_options;
+use crate::adaptive_load::sample;
+use crate::around;
 use crate::array::samples;
 use crate::choices;
 use crate::error::{Raise, finite, number};
@@ -10,6 +12,7 @@ use crate::plane::on_plane;
 use crate::pool::detached;
 use crate::progress::with_progress;
 use crate::shared::Shared;
+use hysteron::Wanted;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -25,11 +28,11 @@ use pyo3::types::PyDict;
 /// ----------
 /// model : Model
 ///     The off-line model. It stays as it is.
-/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments'}
+/// method : {'fixed', 'refit', 'drift', 'least-squares', 'increments'}
 ///     'refit': all weights, by least squares over the last cycle of the input, again and again.
-///     'gradient': all weights, by the normalised gradient. 'increments': the same on increments.
-///     'least-squares': all weights, by recursive least squares. 'drift': coefficients of a few
-///     patterns in which weights change under load and drift, by least squares.
+///     'drift': coefficients of a few patterns in which weights change under load and drift, by
+///     least squares. 'least-squares': all weights, by recursive least squares. 'increments': all
+///     weights, by the normalised gradient on increments. 'fixed': nothing learns.
 /// start : {'off', 'on'}
 ///     State of the operators.
 /// window : str, optional
@@ -42,7 +45,7 @@ use pyo3::types::PyDict;
 ///     'refit': strength of the ridge that holds the weights where they are, relative to the
 ///     window's matrix, above 0 and up to 1. By default 0.1.
 /// gain : float, optional
-///     Gradient methods: the share of a sample's error to remove, above 0 and below 2. By default
+///     'increments': the share of an increment's error to remove, above 0 and below 2. By default
 ///     0.3.
 /// span : float, optional
 ///     'increments': levels between two updates, from 1/8 to 8. By default 1.
@@ -60,7 +63,7 @@ use pyo3::types::PyDict;
 ///     'least-squares': correlation length of the deviations, in levels, from 0 on. By default 1.
 /// offset_share : float, optional
 ///     How freely the offset moves, relative to one weight or coefficient, from 0 on. By default
-///     0.2 √N for N weights with the gradient methods; with least squares such that the offset may
+///     0.2 √N for N weights with 'increments'; with least squares such that the offset may
 ///     deviate by 30 % of the model's range.
 /// dead_zone : float, optional
 ///     Errors up to this are noise, in the output's unit, from 0 on. By default 0.
@@ -87,12 +90,9 @@ use pyo3::types::PyDict;
 /// ------
 /// CoreError
 ///     For an option out of range and for negative weights.
-/// ThermalError
-///     For a model that depends on time. `adapt` learns its weights from a recording.
 /// FitError
-///     For an option that the method does not use, a model with unequal levels, a model that
-///     depends on a load (with another method than 'refit' or 'drift'), and too many levels for the memory
-///     of the method.
+///     For an option that the method does not have, a model that depends on a load (with another
+///     method than 'refit' or 'drift'), and too many levels for the memory of the method.
 ///
 /// Examples
 /// --------
@@ -154,6 +154,8 @@ impl Adaptive {
     /// Parameters
     /// ----------
     /// input, measured : float
+    /// dt : float, optional
+    ///     As for `State.step`.
     ///
     /// Returns
     /// -------
@@ -163,19 +165,28 @@ impl Adaptive {
     /// ------
     /// CoreError
     ///     For numbers that are NaN or infinite. Nothing is changed then.
+    /// ThermalError
+    ///     For a `dt` that is needed and missing, or zero for a model with a lag.
     ///
     /// Examples
     /// --------
     /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.step(0.5, 4.5)
     /// Learning(output=4, error=0.5, outcome='learned', clipped=0)
-    fn step(&self, py: Python<'_>, input: f64, measured: f64) -> PyResult<Learning> {
-        let (input, measured) = (number("input", input)?, number("measured", measured)?);
-        let step = |adaptive: &mut hysteron::Adaptive| adaptive.step(input, measured);
+    #[pyo3(signature = (input, measured, *, dt=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        input: f64,
+        measured: f64,
+        dt: Option<f64>,
+    ) -> PyResult<Learning> {
+        let (sample, measured) = (sample(input, dt)?, number("measured", measured)?);
+        let step = |adaptive: &mut hysteron::Adaptive| adaptive.step(sample, measured);
         Ok(self.inner.with(py, step).raise()?.into())
     }
 
-    /// Simulate each sample, then learn from it. Ctrl-C ends it; what was learned so far stays.
+    /// Simulate each sample, then learn from it, with a model that does not depend on time. Ctrl-C ends it; what was learned so far stays.
     ///
     /// Parameters
     /// ----------
@@ -237,6 +248,8 @@ impl Adaptive {
     /// Parameters
     /// ----------
     /// input : float
+    /// dt : float, optional
+    ///     As for `State.step`.
     ///
     /// Returns
     /// -------
@@ -251,9 +264,10 @@ impl Adaptive {
     /// --------
     /// >>> pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))).simulate(0.5)
     /// 4.0
-    fn simulate(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
-        let input = number("input", input)?;
-        let simulate = |adaptive: &mut hysteron::Adaptive| adaptive.simulate(input);
+    #[pyo3(signature = (input, *, dt=None))]
+    fn simulate(&self, py: Python<'_>, input: f64, dt: Option<f64>) -> PyResult<f64> {
+        let sample = sample(input, dt)?;
+        let simulate = |adaptive: &mut hysteron::Adaptive| adaptive.simulate(sample);
         self.inner.with(py, simulate).raise()
     }
 
@@ -262,6 +276,8 @@ impl Adaptive {
     /// Parameters
     /// ----------
     /// target : float
+    /// dt : float, optional
+    ///     As for `State.step`.
     /// heading : {None, 'rising', 'falling'}
     ///     Where the target goes next: the dead band is crossed at once. With None the input rests
     ///     while the target rests.
@@ -285,16 +301,21 @@ impl Adaptive {
     /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.solve(4.0)
     /// (0.5, 0)
-    #[pyo3(signature = (target, *, heading=None, tolerance=0.0))]
+    #[pyo3(signature = (target, *, dt=None, heading=None, tolerance=0.0))]
     fn solve(
         &self,
         py: Python<'_>,
         target: f64,
+        dt: Option<f64>,
         heading: Option<&str>,
         tolerance: f64,
     ) -> PyResult<(f64, i8)> {
-        let target = choices::target(target, heading, tolerance)?;
-        let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(target);
+        let (dt, _) = around::step(dt, None)?;
+        let wanted = Wanted {
+            dt,
+            ..choices::target(target, heading, tolerance)?.into()
+        };
+        let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(wanted);
         let solution = self.inner.with(py, solve).raise()?;
         Ok((solution.input, solution.status.number()))
     }

@@ -339,7 +339,7 @@ impl AdaptiveLoad {
     }
 }
 
-fn sample(input: f64, dt: Option<f64>) -> PyResult<Sample> {
+pub(crate) fn sample(input: f64, dt: Option<f64>) -> PyResult<Sample> {
     let (dt, load) = around::step(dt, None)?;
     let input = number("input", input)?;
     Ok(Sample { input, dt, load })

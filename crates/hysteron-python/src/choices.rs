@@ -1,6 +1,6 @@
 //! Arguments: words that stand for a choice, and values by their name.
 
-use crate::error::number;
+use crate::error::{Raise, number};
 use hysteron::{Direction, Learner, Operator, Policy, Start, Target};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ pub(crate) fn choice<T: Copy>(argument: &str, name: &str, choices: &[(&str, T)])
     })
 }
 
-/// `. Did you mean 'gradient'?`, or nothing where no name is similar.
+/// `. Did you mean 'increments'?`, or nothing where no name is similar.
 ///
 /// `pyhysteron._convert.did_you_mean` decides, for the Python half as well.
 pub(crate) fn did_you_mean(name: &str, names: &[&str], quote: &str) -> String {
@@ -46,16 +46,13 @@ pub(crate) fn operator_name(operator: Operator) -> &'static str {
     name_of(operator, &OPERATORS)
 }
 
-/// The method of an adaptation.
+/// The learner of this name.
 pub(crate) fn learner(name: &str) -> PyResult<Learner> {
-    let learners = [
-        ("refit", Learner::Refit),
-        ("gradient", Learner::Gradient),
-        ("increments", Learner::Increments),
-        ("least-squares", Learner::LeastSquares),
-        ("drift", Learner::Drift),
-        ("load", Learner::Load),
-    ];
+    if name == "gradient" {
+        // Says what to take in its place.
+        return name.parse().raise();
+    }
+    let learners = Learner::ALL.map(|learner| (learner.name(), learner));
     choice("method", name, &learners)
 }
 

@@ -26,7 +26,7 @@ impl Model {
     /// name : str, optional
     ///     The model's name in C, and of its files. By default 'model'.
     /// adaptation : bool
-    ///     Also write the code that adapts the weights there, by the gradient method.
+    ///     Also write the code that learns there: by increments, drift or least squares.
     /// dt : float, optional
     ///     The sample time in seconds, above 0. Needed by a model that depends on time, and only
     ///     by one.

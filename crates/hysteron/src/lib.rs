@@ -46,8 +46,9 @@ mod rivals;
 mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Adaptive, AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions,
-    Learner, OutcomeCounts, Refit, ShiftFound, Stuck, Window, adapt,
+    ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Adapted, Adaptive,
+    AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions, Learner, OutcomeCounts, Refit,
+    ShiftFound, Stuck, Window, adapt,
 };
 pub use batch::BatchModel;
 #[cfg(feature = "data")]

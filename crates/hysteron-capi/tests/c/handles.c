@@ -128,7 +128,6 @@ void handles(void) {
     OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, 3, stiffer, 6, 10.0, 1, &plant));
     save_and_restore(model);
     series(model);
-    adaptation(model, plant, HYSTERON_GRADIENT);
     adaptation(model, plant, HYSTERON_INCREMENTS);
     adaptation(model, plant, HYSTERON_LEAST_SQUARES);
     OK(hysteron_state_new(model, &state));

@@ -86,7 +86,6 @@ void memory_form(void) {
     OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, LEVELS, softer, 6, 0.0, 1, &model));
     OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, LEVELS, WEIGHTS, 6, 0.0, 1, &plant));
     save_and_restore(model);
-    learns(model, plant, HYSTERON_GRADIENT);
     learns(model, plant, HYSTERON_INCREMENTS);
     learns(model, plant, HYSTERON_LEAST_SQUARES);
     OK(hysteron_model_free(model));

@@ -107,7 +107,7 @@ static void refusals(uint64_t model) {
     OK(hysteron_state_free(state));
     OK(hysteron_model_free(other));
     REQUIRE(hysteron_adaptation_default(8, &options) == HYSTERON_VALUE);
-    OK(hysteron_adaptation_default(HYSTERON_GRADIENT, &options));
+    OK(hysteron_adaptation_default(HYSTERON_INCREMENTS, &options));
     options.gain = 3.0;
     REQUIRE(hysteron_adaptive_new(model, &options, &adaptive) == HYSTERON_ADAPTATION);
     REQUIRE(hysteron_model_at_load(model, 1.0, &other) == HYSTERON_FIT);

@@ -108,7 +108,7 @@ pub fn options() -> HysteronAdaptation {
     // SAFETY: all fields are numbers.
     let mut options = unsafe { std::mem::zeroed() };
     // SAFETY: a live structure.
-    let filled = unsafe { hysteron_adaptation_default(HYSTERON_GRADIENT, &mut options) };
+    let filled = unsafe { hysteron_adaptation_default(HYSTERON_INCREMENTS, &mut options) };
     assert_eq!(filled, HYSTERON_OK);
     options
 }

@@ -48,7 +48,7 @@ pub(crate) enum Command {
     #[command(after_help = "Example:\n\
         \x20 hysteron fit run1.csv --input temperature --output displacement \
         -o spring.json")]
-    Fit(Fit),
+    Fit(Box<Fit>),
     /// Fit a model to each of many actuators, and compare them
     #[command(subcommand)]
     Fleet(Fleet),

@@ -1,6 +1,7 @@
 //! Values of options: their types, ranges and messages.
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use hysteron::Step;
 
 /// What is done or not, without a value.
@@ -178,34 +179,13 @@ pub(crate) enum Policy {
     Anticipate,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Learner {
-    /// All weights, by least squares over the last cycle of the input, again and again
-    Refit,
-    /// All weights, by the normalised gradient
-    Gradient,
-    /// All weights, by the normalised gradient on increments of the output
-    Increments,
-    /// All weights, by recursive least squares
-    LeastSquares,
-    /// A few coefficients: the weights shifted along the plane, or the load dependence of a model
-    /// with a load
-    Drift,
-    /// The shift of the input axis alone: a load that nobody measures
-    Load,
-}
-
-impl From<Learner> for hysteron::Learner {
-    fn from(learner: Learner) -> Self {
-        match learner {
-            Learner::Refit => Self::Refit,
-            Learner::Gradient => Self::Gradient,
-            Learner::Increments => Self::Increments,
-            Learner::LeastSquares => Self::LeastSquares,
-            Learner::Drift => Self::Drift,
-            Learner::Load => Self::Load,
-        }
-    }
+/// The learners by their names. One that is gone is refused with what to take.
+pub(super) fn learners() -> impl TypedValueParser<Value = hysteron::Learner> {
+    let known = hysteron::Learner::ALL
+        .map(|learner| PossibleValue::new(learner.name()).help(learner.purpose()));
+    let gone = PossibleValue::new("gradient").hide(true);
+    let values = known.into_iter().chain([gone]);
+    PossibleValuesParser::new(values).try_map(|name| name.parse::<hysteron::Learner>())
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -26,7 +26,7 @@ fn wires() -> tempfile::TempDir {
 
 const ADAPT: &str = "adapt model.json after.csv --input x --output y -o adapted.json";
 
-const METHODS: [&str; 5] = ["refit", "gradient", "increments", "least-squares", "drift"];
+const METHODS: [&str; 4] = ["refit", "increments", "least-squares", "drift"];
 
 #[test]
 fn every_method_prints_and_writes_what_it_learned() {
@@ -161,7 +161,7 @@ fn faults_are_named_and_nothing_is_written() {
             "`gain`",
         ),
         (
-            format!("adapt model.json after.csv {rest} --method gradient --gain 3"),
+            format!("adapt model.json after.csv {rest} --method increments --gain 3"),
             "gain",
         ),
         (
@@ -202,6 +202,9 @@ fn faults_are_named_and_nothing_is_written() {
     );
     assert!(!folder.path().join("none.json").exists());
     // Not a number, and not a method: wrong usage.
+    let gone = run(folder.path(), &format!("{ADAPT} --method gradient"));
+    assert_eq!(gone.status.code(), Some(2));
+    assert!(text(&gone.stderr).contains("take `increments`"));
     for wrong in ["--gain many", "--method newton", "--trial -1", "--window 3"] {
         let done = run(folder.path(), &format!("{ADAPT} {wrong}"));
         assert_eq!(done.status.code(), Some(2), "{wrong}");
@@ -315,7 +318,7 @@ fn a_model_that_ended_worse_is_not_written_without_force() {
     }
     fs::write(folder.path().join("same.csv"), table).unwrap();
     let line = "adapt model.json same.csv --input x --output y -o adapted.json --table table.csv \
-                --method gradient --gain 1.5 --dead-zone 0";
+                --method increments --gain 1.5 --dead-zone 0";
     let said = refused(folder.path(), line);
     assert!(
         said.contains("adapted.json: the model is not written"),
@@ -339,7 +342,7 @@ fn a_model_that_ended_worse_is_not_written_without_force() {
     for method in METHODS {
         let follow = match method {
             "refit" => "",
-            "gradient" | "increments" => "--gain 1.5 --dead-zone 0",
+            "increments" => "--gain 1.5 --dead-zone 0",
             _ => "--noise 0.01 --dead-zone 0",
         };
         let line = format!("{ADAPT} --method {method} {follow}").replace("after", "same");

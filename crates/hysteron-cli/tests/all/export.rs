@@ -70,7 +70,7 @@ fn files_and_figures_as_json() {
 fn a_model_that_learns() {
     let folder = models();
     let said = json(folder.path(), "export c spring.json -o mcu --adaptation");
-    assert_eq!(said["files"].as_array().unwrap().len(), 8);
+    assert_eq!(said["files"].as_array().unwrap().len(), 11);
     assert!(
         said["ram_bytes"]["adaptation"].as_u64().unwrap() > 100,
         "{said}"

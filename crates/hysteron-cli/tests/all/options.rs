@@ -4,9 +4,7 @@
 use std::process::Command;
 
 const PAGE: &str = include_str!("../../../../docs/options.md");
-const LIBRARY_ADAPT: &str = include_str!("../../../hysteron/src/adapt/options.rs");
 const LIBRARY_FIT: &str = include_str!("../../../hysteron/src/identify/options.rs");
-const SCENARIOS: &str = include_str!("../../../hysteron-sim/src/track/options.rs");
 const PYTHON_ADAPT: &str = include_str!("../../../hysteron-python/src/adapt.rs");
 const PYTHON_ADAPTIVE: &str = include_str!("../../../hysteron-python/src/adaptive.rs");
 const PYTHON_FIT: &str = include_str!("../../../hysteron-python/src/fit.rs");
@@ -126,86 +124,58 @@ fn of_parameter(source: &str, name: &str) -> Option<String> {
     )
 }
 
-/// What the documentation says of a public field: the comment above it.
-fn of_field(source: &str, structure: &str, name: &str) -> Option<String> {
-    let (_, body) = source.split_once(&format!("pub struct {structure} {{"))?;
-    let (body, _) = body.split_once("\n}")?;
-    let mut comment = Vec::new();
-    for line in body.lines().map(str::trim) {
-        if let Some(text) = line.strip_prefix("///") {
-            comment.push(text);
-        } else if line.starts_with(&format!("pub {name}:")) {
-            return Some(comment.join(" "));
-        } else {
-            comment.clear();
-        }
-    }
-    None
-}
-
 #[test]
-fn estimators_have_one_default_each() {
-    let (page, library) = (section("Estimators"), rows(LIBRARY_ADAPT));
-    let help = help("adapt");
-    assert_eq!(page.len(), library.len(), "options of AdaptOptions");
-    for row in &page {
-        let name = row.name.as_str();
-        let of_library = library.iter().find(|other| other.name == name);
-        let of_library =
-            of_library.unwrap_or_else(|| panic!("AdaptOptions has no row for `{name}`"));
-        // Three defaults are words, and surfaces have their own.
-        let word = match name {
-            "dead_zone" => Some("twice"),
-            "load" => Some("middle of its range"),
+fn learners_have_one_table() {
+    let (page, help) = (section("Learners"), help("adapt"));
+    // With the learners, `learner` and `start`.
+    let others = hysteron::Learner::ALL.len() + 2;
+    assert_eq!(page.len(), hysteron::ADAPT_OPTIONS.len() + others);
+    for option in hysteron::ADAPT_OPTIONS {
+        let names = option.learners.iter().map(|learner| format!("`{learner}`"));
+        let learners = match option.learners.len() + 1 == hysteron::Learner::ALL.len() {
+            true => "all".to_owned(),
+            false => names.collect::<Vec<_>>().join(", "),
+        };
+        let hysteron::AdaptOption {
+            name,
+            default,
+            range,
+            purpose,
+            ..
+        } = option;
+        let row = format!("| `{name}` | {learners} | {default} | {range} | {purpose} |");
+        assert!(PAGE.contains(&row), "docs/options.md has no row {row}");
+        assert!(of_option(&help, name).contains("[default:"), "{name}");
+        // Without a recording nothing tells the noise.
+        let default = match name {
+            "dead_zone" => "0",
+            _ => default,
+        };
+        let (name, default) = (name.to_owned(), default.to_owned());
+        let text = of_parameter(PYTHON_ADAPTIVE, &name);
+        let text = text.unwrap_or_else(|| panic!("Python has no `{name}`"));
+        let word = match name.as_str() {
+            "load" => Some("middle"),
             "every" => Some("eighth of the window"),
             _ => None,
         };
-        // What does not fit into the table stands above the field.
-        let default = match of_library.default.as_str() {
-            "see the field" => {
-                after_default(&of_field(LIBRARY_ADAPT, "AdaptOptions", name).unwrap())
-            }
-            default => default.to_owned(),
-        };
-        agrees(row, "the library", &default, word);
-
-        let option = if name == "learner" { "method" } else { name };
         agrees(
-            row,
-            "the command",
-            &after_default(&of_option(&help, option)),
+            &Row { name, default },
+            "Python",
+            &after_default(&text),
             word,
         );
-
-        match name {
-            "learner" => assert!(PYTHON_ADAPT.contains("method='refit'")),
-            "start" => assert!(PYTHON_ADAPT.contains("start='off'")),
-            "dead_zone" => assert!(PYTHON_ADAPT.contains("dead zone is twice")),
-            _ => {
-                let text = of_parameter(PYTHON_ADAPTIVE, name);
-                let text = text.unwrap_or_else(|| panic!("Python has no `{name}`"));
-                agrees(row, "Python", &after_default(&text), word);
-            }
-        }
-
-        let field = of_field(SCENARIOS, "AdaptationOptions", name);
-        match name {
-            "learner" | "start" | "load" | "window" | "every" | "ridge" => {
-                assert!(field.is_none(), "{name}: see docs/options.md")
-            }
-            // No recording tells the noise.
-            "dead_zone" => assert_eq!(numbers(&after_default(&field.unwrap())), [0.0]),
-            _ => {
-                let text = field.unwrap_or_else(|| panic!("scenarios have no `{name}`"));
-                // They have no `drift`, whose default stands last.
-                let weights = Row {
-                    name: row.name.clone(),
-                    default: row.default.split("; `drift`").next().unwrap().to_owned(),
-                };
-                agrees(&weights, "scenarios", &after_default(&text), word);
-            }
-        }
     }
+    for learner in hysteron::Learner::ALL {
+        let row = format!("| `{learner}` | {} |", learner.purpose());
+        assert!(PAGE.contains(&row), "docs/options.md has no row {row}");
+        let said = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            said.contains(&format!("{learner}: {}", learner.purpose())),
+            "{said}"
+        );
+    }
+    assert!(PYTHON_ADAPT.contains("method='refit'") && PYTHON_ADAPT.contains("start='off'"));
 }
 
 #[test]

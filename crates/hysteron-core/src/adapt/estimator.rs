@@ -62,8 +62,6 @@ pub struct Estimator<T, M> {
     /// The off-line offset. The last parameter is the deviation from it, in units of
     /// `offset_share`.
     pub(super) offset: T,
-    /// `c` of [`Method::Gradient`].
-    pub(super) floor: T,
     /// The position that the operators' states belong to. `None` where they have to be computed
     /// from a state first.
     pub(super) aligned: Option<Position<T>>,

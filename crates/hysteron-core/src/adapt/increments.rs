@@ -80,8 +80,8 @@ impl<T: Real> Increment<T> {
 }
 
 impl<T: Real> Finished<T> {
-    /// Moves the weights of the rows and columns crossed, as [`gradient::update`](super::gradient)
-    /// moves all.
+    /// Moves the weights of the rows and columns crossed, `θ ← θ + g φ e/(φᵀφ) + l (θ₀ − θ)`, with
+    /// gain `g`, leakage `l` and off-line weights `θ₀`. Weights stay at zero or above.
     pub(super) fn update(
         &self,
         slices: &mut Slices<'_, T>,

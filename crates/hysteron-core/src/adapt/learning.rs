@@ -7,7 +7,7 @@ use super::least_squares::{self, Law};
 use super::trial::{Errors, Trial};
 use super::vector::dot;
 use super::watch::{Channel, Reading, Watched};
-use super::{Adaptation, Method, Outcome, gradient, parameters};
+use super::{Adaptation, Method, Outcome, parameters};
 use crate::branch::Turn;
 use crate::memory::Memory;
 use crate::plane::operator_count;
@@ -47,8 +47,18 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             self.increment = None;
             return Outcome::Rejected;
         }
-        let Method::Increments { gain, .. } = self.options.method else {
-            return self.learn(state, measured, error);
+        let gain = match self.options.method {
+            Method::Increments { gain, .. } => gain,
+            Method::LeastSquares {
+                forgetting, noise, ..
+            } => {
+                let variance = noise * noise;
+                let law = Law {
+                    forgetting,
+                    variance,
+                };
+                return self.learn(state, measured, error, law);
+            }
         };
         let wrong_level = moved && self.learn_level(measured, above, gain);
         let outcome = match ends {
@@ -108,12 +118,12 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         dot(slices.offline, slices.phi)
     }
 
-    /// Learns from a sample with a method whose regressor is that of the whole output.
-    fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
+    /// Learns from a sample by least squares.
+    fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T, law: Law<T>) -> Outcome
     where
         S: Memory<Turn<T>>,
     {
-        let (options, floor) = (self.options, self.floor);
+        let options = self.options;
         let mut slices = self.layout.cut(self.memory.as_mut());
         let share = options.offset_share;
         parameters::regressor(&mut slices, self.operator, self.levels, share, state);
@@ -129,30 +139,12 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             least_squares::restart(&mut slices);
             return Outcome::RolledBack;
         }
-        match options.method {
-            Method::LeastSquares {
-                forgetting, noise, ..
-            } => {
-                let law = Law {
-                    forgetting,
-                    variance: noise * noise,
-                };
-                let counted = options.beyond(rest - dot(slices.estimate, slices.phi));
-                if counted == T::ZERO {
-                    return Outcome::Waiting;
-                }
-                law.update(&mut slices, counted, options.leakage);
-                least_squares::project(&mut slices);
-            }
-            Method::Gradient { gain } | Method::Increments { gain, .. } => {
-                let counted = options.beyond(error);
-                if counted == T::ZERO {
-                    return Outcome::Waiting;
-                }
-                gradient::update(&mut slices, counted, (gain, options.leakage), floor);
-                gradient::project(slices.theta);
-            }
+        let counted = options.beyond(rest - dot(slices.estimate, slices.phi));
+        if counted == T::ZERO {
+            return Outcome::Waiting;
         }
+        law.update(&mut slices, counted, options.leakage);
+        least_squares::project(&mut slices);
         Outcome::Learned
     }
 
@@ -209,7 +201,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         outcome
     }
 
-    /// Learns the offset from the error of the output, as the gradient does with every operator on.
+    /// Learns the offset from the error of the output, by a normalised gradient.
     /// Increments have no information about it. Returns whether a trial took the offset back.
     fn learn_level(&mut self, measured: T, above: T, gain: T) -> bool {
         let (options, fixed) = (self.options, self.offset);

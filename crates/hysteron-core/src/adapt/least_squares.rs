@@ -108,7 +108,11 @@ pub(super) fn project<T: Real>(slices: &mut Slices<'_, T>) {
         estimate[k] = T::ZERO;
     }
     theta.copy_from_slice(estimate);
-    super::gradient::project(theta);
+    if let Some((_offset, weights)) = theta.split_last_mut() {
+        for weight in weights {
+            *weight = weight.max(T::ZERO);
+        }
+    }
 }
 
 /// Restarts estimate and covariance from the present parameters, after these were replaced.

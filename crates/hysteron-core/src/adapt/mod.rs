@@ -9,7 +9,6 @@
 
 mod estimator;
 mod gate;
-mod gradient;
 mod increments;
 mod learning;
 mod least_squares;

@@ -18,26 +18,14 @@ use crate::scalar::Real;
 /// Cost of a sample that is learned from, relative to a step of [`crate::Definition`], as
 /// `cargo bench -p hysteron-core --bench adaptation` prints it on an x86-64 processor:
 ///
-/// | K | gradient | increments | least squares | least squares, 6 coefficients |
-/// | --- | --- | --- | --- | --- |
-/// | 10 | 2.5 | 0.9 | 18 | 6 |
-/// | 20 | 1.5 | 0.3 | 52 | 2.7 |
-/// | 40 | 1.2 | 0.13 | 190 | 1.5 |
-/// | 100 | 1.3 | 0.06 | | 1.1 |
+/// | K | increments | least squares | least squares, 6 coefficients |
+/// | --- | --- | --- | --- |
+/// | 10 | 0.9 | 18 | 6 |
+/// | 20 | 0.3 | 52 | 2.7 |
+/// | 40 | 0.13 | 190 | 1.5 |
+/// | 100 | 0.06 | | 1.1 |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method<T> {
-    /// Normalised gradient, `μ ← μ + g φ e/(c + κ² + φᵀφ)`: the projection algorithm (Goodwin & Sin
-    /// 1984, section 3.3).
-    ///
-    /// `c` is a hundredth of `φᵀφ` with every operator on. It keeps a few operators that are hardly
-    /// on from taking the whole error. `O(K²)`: a few passes over the weights and the table. Try
-    /// this method first: it needs no knowledge of the noise, and it suits more levels than least
-    /// squares.
-    Gradient {
-        /// `g`, above 0 and below 2. 1 removes nearly the whole error of the sample. Usual: 0.1 to
-        /// 0.5.
-        gain: T,
-    },
     /// Normalised gradient on the increments between two inputs some levels apart (the
     /// time-difference scheme of Tan & Baras 2005).
     ///
@@ -49,8 +37,8 @@ pub enum Method<T> {
     /// The table is renewed by one row in each sample, so what was learned acts at most `2K`
     /// samples later. The model needs memory for two tables. For many levels on a small processor.
     Increments {
-        /// As for [`Method::Gradient`]. The offset follows the error of the output with the same
-        /// gain.
+        /// `g`, above 0 and below 2. 1 removes nearly the whole error of an increment. Usual: 0.1 to
+        /// 0.5. The offset follows the error of the output with the same gain.
         gain: T,
         /// Levels from the start of an increment to its end, from 1/8 to 8. Long increments are
         /// less noisy. Usual: 1.
@@ -83,7 +71,7 @@ pub enum Method<T> {
 ///
 /// | Option | Default | Range | For |
 /// | --- | --- | --- | --- |
-/// | `method` | gradient, gain 0.3 | see [`Method`] | how weights follow the error |
+/// | `method` | increments, gain 0.3, span 1 | see [`Method`] | how weights follow the error |
 /// | `offset_share` | 1 | from 0 | `κ`: how freely the offset moves, relative to one weight |
 /// | `dead_zone` | 0 | from 0 | errors up to this are noise (Peterson & Narendra 1982) |
 /// | `leakage` | 0 | 0 to 1 | return to the off-line weights (Ioannou & Kokotović 1984) |
@@ -144,8 +132,9 @@ impl<T: Real> Default for Adaptation<T> {
     fn default() -> Self {
         let hundredths = |n| T::from_index(n) / T::from_index(100);
         Self {
-            method: Method::Gradient {
+            method: Method::Increments {
                 gain: hundredths(30),
+                span: T::ONE,
             },
             offset_share: T::ONE,
             dead_zone: T::ZERO,
@@ -173,7 +162,6 @@ impl<T: Real> Adaptation<T> {
             false => Err(Error::Adaptation { option }),
         };
         match self.method {
-            Method::Gradient { gain } => require(learns(gain), "gain")?,
             Method::Increments { gain, span } => {
                 let eight = T::from_index(8);
                 require(learns(gain), "gain")?;

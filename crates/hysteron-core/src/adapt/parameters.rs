@@ -47,16 +47,6 @@ pub(super) fn regressor<T, S>(
     }
 }
 
-/// `φᵀφ` with every operator on, without the offset.
-pub(super) fn full_norm<T: Real>(slices: &Slices<'_, T>, levels: usize) -> T {
-    if slices.tables.is_empty() {
-        return T::from_index(slices.gamma.len());
-    }
-    let tables = slices.tables.chunks(table_len(levels));
-    let totals = tables.map(|table| table[table_index(levels, 0)]);
-    totals.fold(T::ZERO, |sum, total| sum + total * total)
-}
-
 /// Writes the model's whole table from the parameters.
 pub(super) fn rewrite<T: Real, C: Memory<T>>(
     slices: &Slices<'_, T>,

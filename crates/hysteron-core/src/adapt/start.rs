@@ -131,7 +131,6 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             layout,
             memory,
             offset,
-            floor: T::ZERO,
             aligned: None,
             learned: T::ZERO,
             increment: None,
@@ -169,7 +168,6 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         slices.pending.copy_from_slice(slices.theta);
         parameters::start_covariance(&mut slices, levels, method);
         least_squares::restart(&mut slices);
-        self.floor = parameters::full_norm(&slices, levels) / T::from_index(100);
     }
 }
 

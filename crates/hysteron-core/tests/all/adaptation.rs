@@ -1,13 +1,9 @@
 //! Weights that change from sample to sample: the fast paths stay exact.
 
 use crate::common::{
-    GRADIENT, INCREMENTS, Learner, METHODS, OPERATORS, build, inputs, levels, options, plane, rng,
-    weights,
+    INCREMENTS, Learner, METHODS, OPERATORS, build, inputs, levels, options, plane, rng, weights,
 };
-use hysteron_core::{
-    Adaptation, Definition, Estimator, Method, Operator, Outcome, Status, Target,
-    estimator_len_of_basis, operator_count, operator_index,
-};
+use hysteron_core::{Definition, Method, Operator, Outcome, Status, Target, operator_index};
 use rand::{Rng, RngExt};
 
 /// The largest number of levels for a test of this method. Least squares is `O(K⁴)`.
@@ -33,8 +29,8 @@ fn the_fast_paths_stay_exact_while_weights_change() {
     let (mut forward, mut back) = (0.0_f64, 0.0_f64);
     for seed in 0..120 {
         let mut rng = rng(seed);
-        let method = METHODS[seed as usize % 3];
-        let operator = OPERATORS[seed as usize / 3 % 3];
+        let method = METHODS[seed as usize % 2];
+        let operator = OPERATORS[seed as usize / 2 % 3];
         let k = levels(&mut rng, most(method));
         let plane = plane(&mut rng, k);
         let offline = weights(&mut rng, k);
@@ -181,105 +177,6 @@ fn rebasing_equals_restoring() {
                 (one - other).abs() <= 1e-13 * scale,
                 "seed {seed}: {one} {other}"
             );
-        }
-    }
-}
-
-#[test]
-fn it_learns_along_the_states_of_the_operators() {
-    for seed in 0..60 {
-        let mut rng = rng(2000 + seed);
-        let k = levels(&mut rng, 30);
-        let plane = plane(&mut rng, k);
-        let operator = OPERATORS[seed as usize % 3];
-        // Weights are so large that none comes near zero.
-        let offline = vec![100.0; operator_count(k)];
-        let mut learner = Learner::new(plane, operator, &offline, options(GRADIENT));
-        for (n, input) in inputs(&mut rng, &plane, 600).into_iter().enumerate() {
-            if n % 100 == 99 {
-                // Somebody else may move the state.
-                learner.model.step(&mut learner.state, plane.max()).unwrap();
-                learner
-                    .model
-                    .step(&mut learner.state, plane.level(1))
-                    .unwrap();
-            }
-            let before = learner.estimator.parameters().to_vec();
-            let offset = learner.estimator.offset();
-            let (model, state) = (&learner.model, &mut learner.state.clone());
-            let output = model.step(state, input).unwrap().output;
-            let error = rng.random_range(-1.0..1.0);
-            let outcome = learner
-                .step(input, output + offset + error)
-                .unwrap()
-                .outcome;
-            // The regressor of the offset is 1, so its change is the common step.
-            let step = learner.estimator.offset() - offset;
-            assert_eq!(outcome == Outcome::Learned, step != 0.0);
-            let mut norm = offline.len() as f64 / 100.0 + 1.0;
-            for j in 1..=k {
-                for i in 1..=j {
-                    let n = operator_index(i, j);
-                    let moved = learner.estimator.parameters()[n] - before[n];
-                    let phi = operator.output(learner.state.gamma(i, j).unwrap());
-                    norm += phi * phi;
-                    // Rounding of a weight of about 100.
-                    assert!((moved - step * phi).abs() <= 1e-12, "operator ({i}, {j})");
-                }
-            }
-            if step != 0.0 {
-                // Of an error that is the difference of outputs of up to 100 times 465.
-                assert!((step - 0.3 * error / norm).abs() <= 1e-10, "{step}");
-            }
-        }
-    }
-}
-
-/// `c` is a hundredth of the norm with every operator on, as for weights.
-#[test]
-fn coefficients_of_a_basis_move_along_the_outputs_of_its_members() {
-    for seed in 0..60 {
-        let mut rng = rng(2100 + seed);
-        let k = levels(&mut rng, 12);
-        let plane = plane(&mut rng, k);
-        let operator = OPERATORS[seed as usize % 3];
-        let members: Vec<Vec<f64>> = (0..3).map(|_| weights(&mut rng, k)).collect();
-        let mut parts: Vec<_> = members.iter().map(|w| build(plane, operator, w)).collect();
-        let start = [100.0; 3];
-        let (mut model, mut state) = build(plane, operator, &members[0]);
-        let memory = vec![0.0; estimator_len_of_basis(k, GRADIENT, 3)];
-        let guards = Adaptation {
-            trial: u32::MAX,
-            gate: 0.0,
-            movement: 0.0,
-            ..options(GRADIENT)
-        };
-        let basis = members.concat();
-        let mut estimator =
-            Estimator::of_basis(guards, &mut model, &basis, &start, 0.0, memory).unwrap();
-        let floor: f64 = members.iter().map(|w| total(w).powi(2)).sum::<f64>() / 100.0;
-        for input in inputs(&mut rng, &plane, 30) {
-            let each = parts
-                .iter_mut()
-                .map(|(m, s)| m.step(s, input).unwrap().output);
-            let phi: Vec<f64> = each.collect();
-            let before = estimator.parameters().to_vec();
-            let measured = rng.random_range(-1.0..1.0);
-            let learning = estimator
-                .step(&mut model, &mut state, input, measured)
-                .unwrap();
-            if learning.outcome != Outcome::Learned {
-                continue;
-            }
-            let norm = floor + 1.0 + phi.iter().map(|phi| phi * phi).sum::<f64>();
-            for (n, after) in estimator.parameters().iter().enumerate() {
-                let expected = (before[n] + 0.3 * learning.error * phi[n] / norm).max(0.0);
-                // The error is a difference of outputs up to some hundred times the members'.
-                assert!(
-                    (after - expected).abs() <= 1e-9 * (1.0 + expected),
-                    "{seed}, {n}"
-                );
-            }
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::common;
 
 use common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, dense, options, rng, start_covariance,
-    strokes, unit_plane, weights,
+    INCREMENTS, LEAST_SQUARES, Learner, build, dense, options, rng, start_covariance, strokes,
+    unit_plane, weights,
 };
 use hysteron_core::{
     Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_basis, operator_count,
@@ -119,8 +119,6 @@ fn known_plants_are_found() {
         span: 0.5,
     };
     let cases = [
-        (Method::Gradient { gain: 1.0 }, 10, 0.001),
-        (GRADIENT, 20, 0.001),
         (increments, 10, 1e-6),
         (INCREMENTS, 20, 0.001),
         (LEAST_SQUARES, 10, 0.001),
@@ -212,49 +210,44 @@ fn weights_held_at_zero_do_not_pile_up() {
 fn coefficients_of_a_basis_are_found() {
     const K: usize = 20;
     let n = operator_count(K);
-    let least_squares = Method::LeastSquares {
+    let method = Method::LeastSquares {
         forgetting: 0.99,
         noise: 0.1,
         spread: 1.0,
         correlation: 0.0,
     };
-    for (method, bound) in [
-        (Method::Gradient { gain: 1.0 }, 0.02),
-        (least_squares, 1e-4),
-    ] {
-        for operator in common::OPERATORS {
-            let mut rng = rng(14);
-            let basis: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
-            let scale = basis.chunks(n).map(|member| member.iter().sum::<f64>());
-            // Each member has the total 1, as the members for loads have.
-            let totals: Vec<f64> = scale.collect();
-            let basis: Vec<f64> = (0..3 * n).map(|k| basis[k] / totals[k / n]).collect();
-            let known = [0.5, 2.0, 0.0];
-            let plant: Vec<f64> = (0..n)
-                .map(|k| (0..3).map(|m| known[m] * basis[m * n + k]).sum())
-                .collect();
-            let (plant, mut there) = build(unit_plane(K), operator, &plant);
-            let start = [1.0, 1.0, 1.0];
-            let guards = Adaptation {
-                offset_share: 0.1,
-                ..options(method)
-            };
-            let (mut model, mut state) = build(unit_plane(K), operator, &vec![1.0; n]);
-            let memory = vec![0.0; estimator_len_of_basis(K, method, 3)];
-            let mut estimator =
-                Estimator::of_basis(guards, &mut model, &basis, &start, 0.0, memory).unwrap();
-            for input in strokes(&mut rng, &unit_plane(K), 200_000, 40) {
-                let measured = plant.step(&mut there, input).unwrap().output;
-                estimator
-                    .step(&mut model, &mut state, input, measured)
-                    .unwrap();
-            }
-            for (found, known) in estimator.parameters().iter().zip(known) {
-                assert!(
-                    (found - known).abs() < bound,
-                    "{method:?}, {operator:?}: {found} {known}"
-                );
-            }
+    for operator in common::OPERATORS {
+        let mut rng = rng(14);
+        let basis: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
+        let scale = basis.chunks(n).map(|member| member.iter().sum::<f64>());
+        // Each member has the total 1, as the members for loads have.
+        let totals: Vec<f64> = scale.collect();
+        let basis: Vec<f64> = (0..3 * n).map(|k| basis[k] / totals[k / n]).collect();
+        let known = [0.5, 2.0, 0.0];
+        let plant: Vec<f64> = (0..n)
+            .map(|k| (0..3).map(|m| known[m] * basis[m * n + k]).sum())
+            .collect();
+        let (plant, mut there) = build(unit_plane(K), operator, &plant);
+        let start = [1.0, 1.0, 1.0];
+        let guards = Adaptation {
+            offset_share: 0.1,
+            ..options(method)
+        };
+        let (mut model, mut state) = build(unit_plane(K), operator, &vec![1.0; n]);
+        let memory = vec![0.0; estimator_len_of_basis(K, method, 3)];
+        let mut estimator =
+            Estimator::of_basis(guards, &mut model, &basis, &start, 0.0, memory).unwrap();
+        for input in strokes(&mut rng, &unit_plane(K), 200_000, 40) {
+            let measured = plant.step(&mut there, input).unwrap().output;
+            estimator
+                .step(&mut model, &mut state, input, measured)
+                .unwrap();
+        }
+        for (found, known) in estimator.parameters().iter().zip(known) {
+            assert!(
+                (found - known).abs() < 1e-4,
+                "{operator:?}: {found} {known}"
+            );
         }
     }
 }
@@ -295,13 +288,11 @@ fn burst(method: Method<f64>, trial: u32) -> (f64, f64, u32) {
 
 #[test]
 fn a_burst_of_wrong_readings_is_rolled_back() {
-    for method in [GRADIENT, INCREMENTS] {
-        let (before, after, rolled_back) = burst(method, 256);
-        assert_eq!(rolled_back, 1, "{method:?}");
-        assert!(after < 1.2 * before, "{method:?}: {before} {after}");
-        // Without a return to the last good weights the damage stays.
-        let (_, alone, none) = burst(method, u32::MAX);
-        assert_eq!(none, 0);
-        assert!(alone > 2.0 * after, "{method:?}: {alone} {after}");
-    }
+    let (before, after, rolled_back) = burst(INCREMENTS, 256);
+    assert_eq!(rolled_back, 1);
+    assert!(after < 1.2 * before, "{before} {after}");
+    // Without a return to the last good weights the damage stays.
+    let (_, alone, none) = burst(INCREMENTS, u32::MAX);
+    assert_eq!(none, 0);
+    assert!(alone > 2.0 * after, "{alone} {after}");
 }

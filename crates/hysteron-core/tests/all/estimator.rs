@@ -1,8 +1,7 @@
 //! The errors of estimators, their memory and their number types.
 
 use crate::common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, build, dense, options, rng, strokes,
-    unit_plane,
+    INCREMENTS, LEAST_SQUARES, Learner, METHODS, build, dense, options, rng, strokes, unit_plane,
 };
 use hysteron_core::{
     Adaptation, Error, Estimator, Method, Model, Operator, Plane, Real, State, Turn, estimator_len,
@@ -32,7 +31,6 @@ fn options_out_of_range_are_refused_by_name() {
     let (nan, infinite) = (f64::NAN, f64::INFINITY);
     let mut cases = Vec::new();
     for bad in [0.0, -0.1, 2.0, nan, infinite] {
-        cases.push((options(Method::Gradient { gain: bad }), "gain"));
         cases.push((options(gain(bad)), "gain"));
     }
     for bad in [0.0, 0.12, 8.1, nan, infinite] {
@@ -47,7 +45,7 @@ fn options_out_of_range_are_refused_by_name() {
     }
     for bad in [-1.0, nan, infinite] {
         cases.push((options(least_squares(0.9, 1.0, 1.0, bad)), "correlation"));
-        let guards = options(GRADIENT);
+        let guards = options(INCREMENTS);
         let (offset_share, dead_zone, movement) = (bad, bad, bad);
         cases.push((
             Adaptation {
@@ -75,14 +73,14 @@ fn options_out_of_range_are_refused_by_name() {
     cases.push((
         Adaptation {
             leakage: 1.1,
-            ..options(GRADIENT)
+            ..options(INCREMENTS)
         },
         "leakage",
     ));
     cases.push((
         Adaptation {
             trial: 0,
-            ..options(GRADIENT)
+            ..options(INCREMENTS)
         },
         "trial",
     ));
@@ -154,7 +152,6 @@ fn no_more_memory_than_the_arrays_need() {
         // states.
         let common = 7 * (n + 1) + n;
         let triangle = operator_count(n + 1);
-        assert_eq!(estimator_len(levels, GRADIENT), common);
         assert_eq!(estimator_len(levels, INCREMENTS), common + n);
         let matrices = 2 * triangle + 2 * (n + 1);
         assert_eq!(estimator_len(levels, LEAST_SQUARES), common + matrices);
@@ -162,11 +159,18 @@ fn no_more_memory_than_the_arrays_need() {
             let common = 7 * (count + 1) + count * table_len(levels);
             let matrices = 2 * operator_count(count + 1) + 2 * (count + 1);
             let len = |method| estimator_len_of_basis(levels, method, count);
-            assert_eq!(len(GRADIENT), common);
             assert_eq!(len(LEAST_SQUARES), common + matrices);
         }
     }
 }
+
+/// Least squares of coefficients.
+const COEFFICIENTS: Method<f64> = Method::LeastSquares {
+    forgetting: 0.99,
+    noise: 0.01,
+    spread: 1.0,
+    correlation: 0.0,
+};
 
 #[test]
 fn parts_and_shares() {
@@ -177,7 +181,7 @@ fn parts_and_shares() {
         Estimator::of_basis(options, &mut model, basis, coefficients, 0.0, memory).map(|_| ())
     };
     let basis = [1.0; 2 * N];
-    assert_eq!(new(GRADIENT, &basis, &[1.0, 0.0]), Ok(()));
+    assert_eq!(new(COEFFICIENTS, &basis, &[1.0, 0.0]), Ok(()));
     let bad = |option| Err(Error::Adaptation { option });
     for coefficients in [
         [-1.0, 1.0],
@@ -185,21 +189,24 @@ fn parts_and_shares() {
         [1.0, f64::INFINITY],
         [1e308, 1e308],
     ] {
-        assert_eq!(new(GRADIENT, &basis, &coefficients), bad("coefficients"));
+        assert_eq!(
+            new(COEFFICIENTS, &basis, &coefficients),
+            bad("coefficients")
+        );
     }
-    assert_eq!(new(GRADIENT, &[], &[]), bad("coefficients"));
+    assert_eq!(new(COEFFICIENTS, &[], &[]), bad("coefficients"));
     assert_eq!(new(INCREMENTS, &basis, &[1.0, 1.0]), bad("method"));
     assert_eq!(new(LEAST_SQUARES, &basis, &[1.0, 1.0]), bad("correlation"));
     let (expected, found) = (3 * N, 2 * N);
     let count = Error::WeightCount { expected, found };
-    assert_eq!(new(GRADIENT, &basis, &[1.0; 3]), Err(count));
+    assert_eq!(new(COEFFICIENTS, &basis, &[1.0; 3]), Err(count));
     // Twice the sum of the weights has to be a number, as for every model.
     let all = |share: f64| [share * (f64::MAX / (2 * N) as f64); 2];
-    assert_eq!(new(GRADIENT, &basis, &all(0.49)), Ok(()));
-    assert_eq!(new(GRADIENT, &basis, &all(0.51)), bad("coefficients"));
+    assert_eq!(new(COEFFICIENTS, &basis, &all(0.49)), Ok(()));
+    assert_eq!(new(COEFFICIENTS, &basis, &all(0.51)), bad("coefficients"));
     let negative = [-1.0; 2 * N];
     assert!(matches!(
-        new(GRADIENT, &negative, &[1.0, 1.0]),
+        new(COEFFICIENTS, &negative, &[1.0, 1.0]),
         Err(Error::NegativeWeights(_))
     ));
 }
@@ -337,7 +344,7 @@ fn messages_say_the_range() {
         ("burst", "1 or more"),
         (
             "method",
-            "gradient or least squares where the coefficients of a basis are adapted",
+            "least squares where the coefficients of a basis are adapted",
         ),
         ("coefficients", "finite numbers from 0 on, at least one"),
     ];

@@ -2,7 +2,7 @@
 //! finite and not negative.
 
 use crate::common::{
-    GRADIENT, INCREMENTS, Learner, METHODS, OPERATORS, build, dense, inputs, options, rng, strokes,
+    INCREMENTS, Learner, METHODS, OPERATORS, build, dense, inputs, options, rng, strokes,
     unit_plane, weights,
 };
 use hysteron_core::{Adaptation, Method, Operator, Outcome, operator_count};
@@ -143,16 +143,16 @@ fn leakage_leads_back_to_the_offline_weights() {
 fn readings_of_any_size_leave_weights_that_are_numbers() {
     for seed in 0..60 {
         let mut rng = rng(40 + seed);
-        let method = METHODS[seed as usize % 3];
+        let method = METHODS[seed as usize % 2];
         let k = 2 + seed as usize % 5;
         let offline = weights(&mut rng, k);
         let guards = Adaptation {
-            offset_share: [0.0, 1.0, 1e3][seed as usize / 3 % 3],
+            offset_share: [0.0, 1.0, 1e3][seed as usize / 2 % 3],
             ..options(method)
         };
         let mut learner = Learner::new(
             unit_plane(k),
-            OPERATORS[seed as usize / 9 % 3],
+            OPERATORS[seed as usize / 6 % 3],
             &offline,
             guards,
         );
@@ -252,83 +252,83 @@ fn frozen_it_predicts_and_does_not_learn() {
 #[test]
 fn the_models_sum_stays_below_half_the_largest_number() {
     let k = 3;
-    for method in [GRADIENT, INCREMENTS] {
-        let mut rng = rng(90);
-        let offline = vec![f64::MAX / 6.0 * 0.4; operator_count(k)];
-        let guards = Adaptation {
-            gate: 0.0,
-            ..options(method)
-        };
-        let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &offline, guards);
-        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &[1.0; 6]);
-        let mut refused = 0;
-        for input in strokes(&mut rng, &unit_plane(k), 2000, 10) {
-            let share = plant.step(&mut there, input).unwrap().output / 6.0;
-            let learning = learner.step(input, 0.8 * f64::MAX * share).unwrap();
-            refused += usize::from(learning.outcome == Outcome::RolledBack);
-            assert!((2.0 * learner.model.total()).is_finite(), "{method:?}");
-        }
-        assert!(refused > 0, "{method:?}");
+    let mut rng = rng(90);
+    let offline = vec![f64::MAX / 6.0 * 0.4; operator_count(k)];
+    let guards = Adaptation {
+        gate: 0.0,
+        ..options(INCREMENTS)
+    };
+    let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &offline, guards);
+    let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &[1.0; 6]);
+    let mut refused = 0;
+    for input in strokes(&mut rng, &unit_plane(k), 2000, 10) {
+        let share = plant.step(&mut there, input).unwrap().output / 6.0;
+        let learning = learner.step(input, 0.8 * f64::MAX * share).unwrap();
+        refused += usize::from(learning.outcome == Outcome::RolledBack);
+        assert!((2.0 * learner.model.total()).is_finite());
     }
+    assert!(refused > 0);
 }
 
 /// A power of two changes no digit.
 #[test]
 fn a_plant_in_another_unit_is_learned_in_the_same_way() {
     let (k, unit) = (4, 2.0_f64.powi(600));
-    for method in [GRADIENT, INCREMENTS] {
-        let mut rng = rng(91);
-        let offline = dense(&mut rng, k);
-        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &dense(&mut rng, k));
-        let guards = Adaptation {
-            gate: 0.0,
-            trial: u32::MAX,
-            ..options(method)
-        };
-        let scaled = |weights: &[f64]| weights.iter().map(|w| unit * w).collect::<Vec<_>>();
-        let learner = |weights: &[f64]| Learner::new(unit_plane(k), Operator::Mkp, weights, guards);
-        let (mut one, mut other) = (learner(&offline), learner(&scaled(&offline)));
-        for input in strokes(&mut rng, &unit_plane(k), 500, 20) {
-            let measured = plant.step(&mut there, input).unwrap().output;
-            let expected = one.step(input, measured).unwrap();
-            let found = other.step(input, unit * measured).unwrap();
-            assert_eq!(found.outcome, expected.outcome, "{method:?}");
-            assert_eq!(found.output, unit * expected.output, "{method:?}");
-        }
-        let learned = scaled(one.estimator.parameters());
-        assert_eq!(other.estimator.parameters(), learned);
-        assert_ne!(learned, scaled(&offline));
+    let mut rng = rng(91);
+    let offline = dense(&mut rng, k);
+    let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &dense(&mut rng, k));
+    let guards = Adaptation {
+        gate: 0.0,
+        trial: u32::MAX,
+        ..options(INCREMENTS)
+    };
+    let scaled = |weights: &[f64]| weights.iter().map(|w| unit * w).collect::<Vec<_>>();
+    let learner = |weights: &[f64]| Learner::new(unit_plane(k), Operator::Mkp, weights, guards);
+    let (mut one, mut other) = (learner(&offline), learner(&scaled(&offline)));
+    for input in strokes(&mut rng, &unit_plane(k), 500, 20) {
+        let measured = plant.step(&mut there, input).unwrap().output;
+        let expected = one.step(input, measured).unwrap();
+        let found = other.step(input, unit * measured).unwrap();
+        assert_eq!(found.outcome, expected.outcome);
+        assert_eq!(found.output, unit * expected.output);
     }
+    let learned = scaled(one.estimator.parameters());
+    assert_eq!(other.estimator.parameters(), learned);
+    assert_ne!(learned, scaled(&offline));
 }
 
 /// In units in which squares are numbers, the trials are the same too.
 #[test]
 fn trials_do_not_depend_on_the_unit() {
     let (k, mut taken_back) = (4, 0);
-    // A gain near 2 follows noise, so that trials take weights back.
-    let (gain, span) = (1.9, 1.0);
-    for method in [Method::Gradient { gain }, Method::Increments { gain, span }] {
-        for unit in [2.0_f64.powi(300), 2.0_f64.powi(-300)] {
-            let mut rng = rng(92);
-            let weights = dense(&mut rng, k);
-            let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &weights);
-            let guards = Adaptation {
-                gate: 0.0,
-                trial: 40,
-                ..options(method)
-            };
-            let scaled: Vec<f64> = weights.iter().map(|w| unit * w).collect();
-            let learner =
-                |weights: &[f64]| Learner::new(unit_plane(k), Operator::Mkp, weights, guards);
-            let (mut one, mut other) = (learner(&weights), learner(&scaled));
-            for input in strokes(&mut rng, &unit_plane(k), 10_000, 20) {
-                let noise = rng.random_range(-1.0..1.0);
-                let measured = plant.step(&mut there, input).unwrap().output + noise;
-                let expected = one.step(input, measured).unwrap();
-                let found = other.step(input, unit * measured).unwrap();
-                assert_eq!(found.outcome, expected.outcome, "{method:?}");
-                taken_back += usize::from(found.outcome == Outcome::RolledBack);
-            }
+    // A gain near 2 follows wrong readings, so that trials take weights back.
+    let method = Method::Increments {
+        gain: 1.9,
+        span: 1.0,
+    };
+    for unit in [2.0_f64.powi(300), 2.0_f64.powi(-300)] {
+        let mut rng = rng(92);
+        let weights = dense(&mut rng, k);
+        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &weights);
+        let guards = Adaptation {
+            gate: 0.0,
+            trial: 8,
+            ..options(method)
+        };
+        let scaled: Vec<f64> = weights.iter().map(|w| unit * w).collect();
+        let learner = |weights: &[f64]| Learner::new(unit_plane(k), Operator::Mkp, weights, guards);
+        let (mut one, mut other) = (learner(&weights), learner(&scaled));
+        for (n, input) in strokes(&mut rng, &unit_plane(k), 10_000, 20)
+            .into_iter()
+            .enumerate()
+        {
+            let size = if n % 1000 < 200 { 50.0 } else { 0.1 };
+            let noise = size * rng.random_range(-1.0..1.0);
+            let measured = plant.step(&mut there, input).unwrap().output + noise;
+            let expected = one.step(input, measured).unwrap();
+            let found = other.step(input, unit * measured).unwrap();
+            assert_eq!(found.outcome, expected.outcome);
+            taken_back += usize::from(found.outcome == Outcome::RolledBack);
         }
     }
     assert!(taken_back > 10, "{taken_back}");

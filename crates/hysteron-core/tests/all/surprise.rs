@@ -6,10 +6,7 @@ use rand::RngExt;
 use rand::rngs::StdRng;
 
 /// These hardly move a parameter, so that the error of a reading is what a test wants it to be.
-const STILL: [Method<f64>; 3] = [
-    Method::Gradient {
-        gain: f64::MIN_POSITIVE,
-    },
+const STILL: [Method<f64>; 2] = [
     Method::Increments {
         gain: f64::MIN_POSITIVE,
         span: 1.0,
@@ -116,7 +113,7 @@ fn readings_are_refused_and_accepted_as_documented() {
     let (mut refused, mut count) = (0, 0);
     for seed in 0..300 {
         let mut rng = rng(seed);
-        let method = STILL[seed as usize % 3];
+        let method = STILL[seed as usize % 2];
         let gate = [2.0, 12.0, 50.0][rng.random_range(0..3)];
         let burst = [1, 2, 3, 8, 20][rng.random_range(0..5)];
         let mut judge = Judge::new(method, gate, burst);

@@ -26,7 +26,7 @@ impl Rig {
         let mut rng = rng(seed);
         let k = rng.random_range(5..14);
         let plane = unit_plane(k);
-        let operator = OPERATORS[seed as usize / 3 % 3];
+        let operator = OPERATORS[seed as usize / 2 % 3];
         let weights = dense(&mut rng, k);
         let plant = build(plane, operator, &weights);
         let (off, on) = plant.0.output_range();
@@ -97,7 +97,7 @@ const FROZEN: [fn(f64) -> f64; 3] = [|last| last, |_| 0.0, |last| -last];
 #[test]
 fn what_was_learned_from_a_frozen_output_is_undone() {
     for seed in 0..300 {
-        let method = METHODS[seed as usize % 3];
+        let method = METHODS[seed as usize % 2];
         let mut rig = Rig::new(seed, method);
         let samples = rig.rng.random_range(60..400);
         let plane = *rig.learner.model.plane();
@@ -115,7 +115,7 @@ fn what_was_learned_from_a_frozen_output_is_undone() {
                 }
                 false => {
                     let noise = rig.noise * rig.rng.random_range(-1.0..1.0);
-                    FROZEN[seed as usize / 9 % 3](last) + noise
+                    FROZEN[seed as usize / 6 % 3](last) + noise
                 }
             };
             let outcome = rig.learner.step(input, measured).unwrap().outcome;
@@ -147,7 +147,7 @@ fn what_was_learned_from_a_frozen_output_is_undone() {
 #[test]
 fn no_plant_that_changes_is_called_stuck() {
     for seed in 0..600 {
-        let method = METHODS[seed as usize % 3];
+        let method = METHODS[seed as usize % 2];
         let mut rig = Rig::new(seed, method);
         let samples = rig.rng.random_range(20..400);
         let plane = *rig.learner.model.plane();
@@ -179,10 +179,10 @@ fn no_plant_that_changes_is_called_stuck() {
 #[test]
 fn a_drive_that_rests_is_not_stuck() {
     for seed in 0..60 {
-        let mut rig = Rig::new(seed, METHODS[seed as usize % 3]);
+        let mut rig = Rig::new(seed, METHODS[seed as usize % 2]);
         let plane = *rig.learner.model.plane();
         let inputs = loops(&mut rig.rng, &plane, 900, 200);
-        let jitter = [0.0, 0.02, 0.2][seed as usize / 3 % 3] * plane.step();
+        let jitter = [0.0, 0.02, 0.2][seed as usize / 2 % 3] * plane.step();
         for n in 0..20_000 {
             let rest = inputs[n.min(899)];
             let input = rest + jitter * rig.rng.random_range(-1.0..1.0);
@@ -197,7 +197,7 @@ fn a_drive_that_rests_is_not_stuck() {
 #[test]
 fn what_was_learned_at_a_frozen_input_is_undone() {
     for seed in 0..150 {
-        let mut rig = Rig::new(seed, METHODS[seed as usize % 3]);
+        let mut rig = Rig::new(seed, METHODS[seed as usize % 2]);
         // Relays see levels alone: noise between two of them is motion to them, elsewhere none.
         if rig.learner.model.operator() == Operator::Relay {
             continue;
@@ -230,7 +230,7 @@ fn what_was_learned_at_a_frozen_input_is_undone() {
 #[test]
 fn learning_goes_on_where_the_channel_is_back() {
     for seed in 0..60 {
-        let mut rig = Rig::new(seed, METHODS[seed as usize % 3]);
+        let mut rig = Rig::new(seed, METHODS[seed as usize % 2]);
         let plane = *rig.learner.model.plane();
         let inputs = loops(&mut rig.rng, &plane, 6000, 200);
         let mut last = Outcome::AtRest;

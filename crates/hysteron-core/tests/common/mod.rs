@@ -148,7 +148,6 @@ pub fn build_f32(plane: &Plane<f64>, operator: Operator, weights: &[f64]) -> Own
     (model, state)
 }
 
-pub const GRADIENT: Method<f64> = Method::Gradient { gain: 0.3 };
 pub const INCREMENTS: Method<f64> = Method::Increments {
     gain: 0.3,
     span: 1.0,
@@ -159,7 +158,7 @@ pub const LEAST_SQUARES: Method<f64> = Method::LeastSquares {
     spread: 1.0,
     correlation: 2.0,
 };
-pub const METHODS: [Method<f64>; 3] = [GRADIENT, INCREMENTS, LEAST_SQUARES];
+pub const METHODS: [Method<f64>; 2] = [INCREMENTS, LEAST_SQUARES];
 
 pub fn options(method: Method<f64>) -> Adaptation<f64> {
     Adaptation {

@@ -17,7 +17,7 @@ pub(super) const ALGORITHM: [(&str, &str); 4] = [
 const HEADER: &str = include_str!("../../mcu/hysteron_mcu.h");
 
 /// The same for models that learn.
-pub(super) const ADAPTATION: [(&str, &str); 2] = [
+pub(super) const ADAPTATION: [(&str, &str); 5] = [
     (
         "hysteron_mcu_adapt.h",
         include_str!("../../mcu/hysteron_mcu_adapt.h"),
@@ -25,6 +25,18 @@ pub(super) const ADAPTATION: [(&str, &str); 2] = [
     (
         "hysteron_mcu_adapt.c",
         include_str!("../../mcu/hysteron_mcu_adapt.c"),
+    ),
+    (
+        "hysteron_mcu_guards.h",
+        include_str!("../../mcu/hysteron_mcu_guards.h"),
+    ),
+    (
+        "hysteron_mcu_increments.h",
+        include_str!("../../mcu/hysteron_mcu_increments.h"),
+    ),
+    (
+        "hysteron_mcu_least_squares.h",
+        include_str!("../../mcu/hysteron_mcu_least_squares.h"),
     ),
 ];
 

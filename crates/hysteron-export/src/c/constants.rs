@@ -106,7 +106,10 @@ impl<T: Number> Constants<T> {
     }
 
     /// By the structs in the headers.
-    pub(super) fn memory(&self, adaptation: bool) -> CMemory {
+    ///
+    /// `learns`: for what learns on the target, the bytes of its constants beside the weights, and the
+    /// numbers of its memory.
+    pub(super) fn memory(&self, learns: Option<(usize, usize)>) -> CMemory {
         const WORD: usize = 4;
         let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
         let model = aligned(2 * WORD + 10 * T::BYTES + 3);
@@ -140,33 +143,23 @@ impl<T: Number> Constants<T> {
             // Without stages the input is a constant of its own.
             (Some((points, _)), stages) => points.len() + usize::from(stages.is_none()),
         };
-        let options = aligned(6 * T::BYTES + 2 * WORD);
+        let options = 4 * WORD + 11 * T::BYTES;
+        let trial = aligned(4 * T::BYTES + WORD);
         let gate = aligned(4 * T::BYTES + 2 * WORD);
         let piece = aligned(7 * T::BYTES + WORD + 1);
         let watch = aligned(2 * (4 * piece + T::BYTES) + 3 * T::BYTES + WORD);
-        let adaptive = aligned(
-            aligned(model + state + options + 3 * T::BYTES + 10 * WORD)
-                + 8 * T::BYTES
-                + gate
-                + watch
-                + WORD
-                + 3,
-        );
+        let own = options + 2 * trial + gate + watch;
+        let adaptive = aligned(model + own + aligned(22 * WORD) + 10 * T::BYTES + 4);
         let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {
             constants: model
                 + stages
-                + (table + start + if adaptation { weights } else { 0 }) * T::BYTES,
+                + (table + start) * T::BYTES
+                + learns.map_or(0, |(bytes, _)| weights * T::BYTES + bytes),
             state,
             mixed,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
-            adaptation: adaptation.then(|| adaptive - state + self.adaptation_numbers() * T::BYTES),
+            adaptation: learns.map(|(_, numbers)| adaptive + numbers * T::BYTES),
         }
-    }
-
-    /// Table, five times the parameters, and the operators' states.
-    pub(super) fn adaptation_numbers(&self) -> usize {
-        let operators = self.weights.len();
-        self.table().len() + 5 * (operators + 1) + operators
     }
 }

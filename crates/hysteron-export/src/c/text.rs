@@ -1,6 +1,6 @@
 //! The files that hold a model.
 
-use super::algorithm::{ALGORITHM, STAGES};
+use super::algorithm::{ADAPTATION, ALGORITHM, STAGES};
 use super::constants::Constants;
 use super::notation::{array, plain, quantity};
 use super::real::Number;
@@ -11,12 +11,22 @@ use hysteron_core::{operator_index, table_index, table_len, turn_capacity};
 use std::fmt::Write;
 use std::path::Path;
 
+/// What stands beside a model that learns on the target.
+pub(super) struct Learned {
+    /// Its sizes, as macros.
+    pub(super) sizes: String,
+    pub(super) declared: String,
+    /// The definitions, but for the weights.
+    pub(super) defined: String,
+}
+
 /// Declares the model, and says what it is.
 pub(super) fn header<T: Number>(
     export: &CExport,
     constants: &Constants<T>,
     model: &Model,
     source: &Path,
+    learned: Option<&Learned>,
 ) -> String {
     let CExport { name, levels, .. } = export;
     let shout = name.to_uppercase();
@@ -88,20 +98,19 @@ pub(super) fn header<T: Number>(
     let staged = constants.stages.as_ref();
     lines.extend(staged.into_iter().flat_map(|staged| remarks(model, staged)));
     let (mut sizes, mut weights) = (String::new(), start_declared(export, constants));
-    if let Some(bytes) = memory.adaptation {
-        lines.push(format!("adaptation: {bytes} bytes beside (RAM)"));
-        sizes = format!(
-            "#define {shout}_OPERATORS {}\n#define {shout}_ADAPT_NUMBERS {}\n",
-            constants.weights.len(),
-            constants.adaptation_numbers()
-        );
-        weights += &format!("extern const hys_real {name}_weights[{shout}_OPERATORS];\n");
+    if let (Some(bytes), Some(learned)) = (memory.adaptation, learned) {
+        lines.push(format!(
+            "adaptation by increments: {bytes} bytes beside (RAM)"
+        ));
+        sizes.clone_from(&learned.sizes);
+        weights += &learned.declared;
     }
     if staged.is_some_and(|staged| staged.parts.is_some()) {
         sizes += &format!("#define {shout}_TABLE {}\n", table_len(*levels));
     }
     let operators = check(name, "HYS_LAYOUT", ALGORITHM[0]);
     let (file, kind, checks) = match staged {
+        None if learned.is_some() => (ADAPTATION[0].0, "hys_model", operators),
         None => (ALGORITHM[0].0, "hys_model", operators),
         Some(_) => (
             STAGES[0].0,
@@ -152,7 +161,11 @@ fn check(name: &str, macro_name: &str, header: (&str, &str)) -> String {
 }
 
 /// Defines it.
-pub(super) fn source<T: Number>(export: &CExport, constants: &Constants<T>) -> String {
+pub(super) fn source<T: Number>(
+    export: &CExport,
+    constants: &Constants<T>,
+    learned: Option<&Learned>,
+) -> String {
     let CExport {
         name, real, levels, ..
     } = export;
@@ -210,9 +223,10 @@ static const hys_real table[] = ",
         text += &actuator(export, constants, staged);
     }
     text += &start_defined(export, constants);
-    if export.memory.adaptation.is_some() {
+    if let Some(learned) = learned {
         let rows = (1..=*levels).map(|j| &constants.weights[operator_index(1, j)..][..j]);
         let _ = write!(text, "\nconst hys_real {name}_weights[] = {}", array(rows));
+        text += &learned.defined;
     }
     text
 }

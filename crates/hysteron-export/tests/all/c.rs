@@ -268,9 +268,10 @@ fn memory_is_what_is_told() {
             .memory;
         let text = format!(
             "#include \"one.c\"\n#include \"hysteron_mcu_adapt.h\"\n\
-             typedef char constants[sizeof(hys_model) + sizeof table + sizeof one_weights == {} ? \
-             1 : -1];\n\
-             typedef char adapt[sizeof(hys_adaptive) + ONE_ADAPT_NUMBERS * sizeof(hys_real) == {} \
+             typedef char constants[sizeof(hys_model) + sizeof table + sizeof one_weights + \
+             sizeof drift_tables + sizeof drift_coefficients + sizeof(hys_adapt_basis) + \
+             3 * sizeof(hys_adapt_options) == {} ? 1 : -1];\n\
+             typedef char adapt[sizeof(hys_adaptive) + ONE_INCREMENTS_NUMBERS * sizeof(hys_real) == {} \
              ? 1 : -1];\n\
              typedef char state[sizeof(hys_state) == {} ? 1 : -1];\n\
              typedef char turns[ONE_TURNS * sizeof(hys_turn) == {} ? 1 : -1];\n",

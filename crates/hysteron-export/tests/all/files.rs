@@ -100,15 +100,18 @@ fn adaptation_is_an_option() {
     .unwrap();
     assert_eq!((plain.files.len(), plain.memory.adaptation), (6, None));
     let export = c(&model(20.0, 80.0, [1.0; 3], 0.0), folder.path(), &learns).unwrap();
-    assert_eq!(export.files.len(), 8);
-    assert_eq!(names(folder.path()).len(), 8);
-    // The weights join the constants.
-    assert_eq!(export.memory.constants, plain.memory.constants + 3 * 4);
+    assert_eq!(export.files.len(), 11);
+    assert_eq!(names(folder.path()).len(), 11);
+    // The weights join the constants, and six tables with their coefficients.
+    assert!(export.memory.constants > plain.memory.constants + (3 + 6 * 6 + 6) * 4);
     let header = std::fs::read_to_string(folder.path().join("some_spring.h")).unwrap();
-    assert!(
-        header.contains("#define SOME_SPRING_OPERATORS 3\n#define SOME_SPRING_ADAPT_NUMBERS 29\n"),
-        "{header}"
-    );
+    for line in [
+        "#define SOME_SPRING_OPERATORS 3\n",
+        "#define SOME_SPRING_INCREMENTS_NUMBERS 38\n",
+        "extern const hys_adapt_options some_spring_drift;\n",
+    ] {
+        assert!(header.contains(line), "{header}");
+    }
     let empty = tempfile::tempdir().unwrap();
     let said = refused(
         &model(20.0, 80.0, [1.0, -1.0, 1.0], 0.0),

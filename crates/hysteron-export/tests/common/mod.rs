@@ -7,7 +7,7 @@ pub mod staged;
 pub mod walks;
 
 use hysteron::Model;
-use hysteron_core::{operator_count, table_len, turn_capacity};
+use hysteron_core::{table_len, turn_capacity};
 use hysteron_export::{COptions, CReal, CSampling};
 use programs::run;
 use std::fmt::Write as _;
@@ -81,12 +81,27 @@ impl Exported {
             turn_capacity(largest)
         );
         if adaptation {
-            let operators = operator_count(largest);
-            let numbers = table_len(largest) + 5 * (operators + 1) + operators;
+            let each = |item: &dyn Fn(&str) -> String| -> String {
+                let rows = (0..models.len()).map(|n| {
+                    let names = ["increments", "least_squares", "drift"];
+                    let cells = names.map(|name| item(&format!("m{n}_{name}")));
+                    format!("{{{}}}, ", cells.join(", "))
+                });
+                rows.collect()
+            };
+            let upper = |name: &str| name.to_uppercase() + "_NUMBERS";
             writeln!(
                 text,
-                "#define MOST_NUMBERS {numbers}\n\
-                 static const hys_real *const weights[] = {{{weights}}};"
+                "static const hys_real *const weights[] = {{{weights}}};\n\
+                 static const hys_adapt_options *const defaults[][3] = {{{}}};\n\
+                 static const size_t needed[][3] = {{{}}};\n\
+                 typedef union {{ hys_real {}last; }} most;\n\
+                 #define MOST_NUMBERS (sizeof(most) / sizeof(hys_real))",
+                each(&|name| format!("&{name}")),
+                each(&upper),
+                (0..models.len())
+                    .map(|n| format!("m{n}[{}], ", upper(&format!("m{n}_least_squares"))))
+                    .collect::<String>(),
             )
             .unwrap();
         }

@@ -1,5 +1,5 @@
-/* As driver.c, for models that learn. models.h has `weights`, an array beside `models`, and
- * MOST_NUMBERS, too. */
+/* As driver.c, for models that learn. Beside `models`, models.h has their weights, and options and
+ * sizes of memory for each learner. */
 #include <stdio.h>
 
 #include "hysteron_mcu_adapt.h"
@@ -14,18 +14,25 @@ static hys_state compensator;
 int main(void)
 {
     static char line[4096];
-    size_t n = 0, k, needed;
+    size_t n = 0, k, count = 0;
+    int learner;
+    hys_adapt_options options;
     while (fgets(line, sizeof line, stdin) != NULL) {
         const char *command = strtok(line, " \n");
-        hys_adapt_options options;
         hys_real x, y, z = 0, input = 0;
         int code, heading, status = 7;
         switch (command == NULL ? ' ' : command[0]) {
         case 'm':
             n = (size_t)atoi(word());
-            hys_adapt_defaults(&options);
+            learner = atoi(word());
+            options = *defaults[n][learner - 1];
             if (atoi(word()) != 0) {
                 options.gain = number(word());
+                options.span = number(word());
+                options.forgetting = number(word());
+                options.noise = number(word());
+                options.spread = number(word());
+                options.correlation = number(word());
                 options.offset_share = number(word());
                 options.dead_zone = number(word());
                 options.leakage = number(word());
@@ -35,11 +42,13 @@ int main(void)
                 options.burst = (uint32_t)atoi(word());
             }
             k = models[n]->levels;
+            count = learner == HYS_DRIFT ? options.basis->count : k * (k + 1) / 2;
             /* Exactly what is asked for, in memory that held something else. */
             memset(memory, 0x55, sizeof memory);
-            needed = (k + 1) * (k + 2) / 2 + 3 * k * (k + 1) + 5;
-            code = hys_adapt_start(&adaptive, models[n], weights[n], models[n]->offset, &options,
-                                   memory, needed, turns, 4 * k + 8);
+            code = hys_adapt_start(&adaptive, models[n],
+                                   learner == HYS_DRIFT ? options.basis->coefficients : weights[n],
+                                   models[n]->offset, &options, memory, needed[n][learner - 1],
+                                   turns, 4 * k + 8);
             printf("m %d\n",
                    code != 0 ? code : hys_start(&adaptive.model, &compensator, others, 4 * k + 8));
             break;
@@ -77,10 +86,9 @@ int main(void)
             printf("0 %d\n", code != 0 ? code : hys_adapt_realign(&adaptive));
             break;
         case 'w':
-            k = models[n]->levels;
             printf("w %" PRIx64, bits(adaptive.model.offset));
-            for (k = k * (k + 1) / 2; k-- > 0;) {
-                printf(" %" PRIx64, bits(hys_adapt_weights(&adaptive)[k]));
+            for (k = count; k-- > 0;) {
+                printf(" %" PRIx64, bits(hys_adapt_parameters(&adaptive)[k]));
             }
             printf("\n");
             break;

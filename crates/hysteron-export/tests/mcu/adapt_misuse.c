@@ -21,16 +21,15 @@ int main(void)
     const hys_model *model = models[0];
     const hys_real *w = weights[0];
     hys_real bad[MOST_NUMBERS], zero = 0, nan = zero / zero, infinity = 1 / zero, y = 42;
-    int outcome = 42;
+    int outcome = 42, n;
 
     CHECK(hys_adapt_step(&adaptive, 1, 1, &y, &outcome) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_freeze(&adaptive, 1) == HYS_STATE_MISMATCH &&
           hys_adapt_keep(&adaptive) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_roll_back(&adaptive) == HYS_STATE_MISMATCH &&
           hys_adapt_realign(&adaptive) == HYS_STATE_MISMATCH);
-    CHECK(hys_adapt_weights(&adaptive) == NULL && hys_adapt_weights(NULL) == NULL);
-    hys_adapt_defaults(NULL);
-    hys_adapt_defaults(&options);
+    CHECK(hys_adapt_parameters(&adaptive) == NULL && hys_adapt_parameters(NULL) == NULL);
+    options = *defaults[0][0];
     CHECK(hys_adapt_start(NULL, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) ==
           HYS_NULL);
     CHECK(hys_adapt_start(&adaptive, NULL, w, 0, &options, memory, MOST_NUMBERS, turns,
@@ -43,21 +42,31 @@ int main(void)
                           MOST_TURNS) == HYS_NULL);
     CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, NULL,
                           MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS - 1, turns,
-                          MOST_TURNS) == HYS_MEMORY_TOO_SMALL);
+    for (n = 0; n < 3; n++) {
+        options = *defaults[0][n];
+        CHECK(hys_adapt_start(&adaptive, model, n < 2 ? w : options.basis->coefficients, 0, &options,
+                              memory, needed[0][n] - 1, turns, MOST_TURNS) == HYS_MEMORY_TOO_SMALL);
+    }
+    options = *defaults[0][0];
     CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, turns,
                           MOST_TURNS - 1) == HYS_MEMORY_TOO_SMALL);
     CHECK(hys_adapt_start(&adaptive, model, w, nan, &options, memory, MOST_NUMBERS, turns,
                           MOST_TURNS) == HYS_INPUT_NOT_FINITE);
 #define REFUSED(field, value)                 \
     do {                                      \
-        hys_adapt_defaults(&options);            \
+        options = *defaults[0][n];            \
         options.field = value;                \
         CHECK(start(w) == HYS_ADAPTATION);    \
     } while (0)
+    n = 0;
     REFUSED(gain, 0);
     REFUSED(gain, 2);
     REFUSED(gain, nan);
+    REFUSED(span, 0);
+    REFUSED(span, 9);
+    REFUSED(span, nan);
+    REFUSED(learner, 0);
+    REFUSED(learner, 4);
     REFUSED(offset_share, -1);
     REFUSED(offset_share, infinity);
     REFUSED(dead_zone, -1);
@@ -72,7 +81,21 @@ int main(void)
     REFUSED(gate, nan);
     REFUSED(gate, infinity);
     REFUSED(burst, 0);
-    hys_adapt_defaults(&options);
+    for (n = 1; n < 3; n++) {
+        REFUSED(forgetting, 0);
+        REFUSED(forgetting, 2);
+        REFUSED(forgetting, nan);
+        REFUSED(noise, 0);
+        REFUSED(noise, infinity);
+        REFUSED(spread, -1);
+        REFUSED(spread, nan);
+        REFUSED(correlation, -1);
+        REFUSED(correlation, infinity);
+    }
+    n = 2;
+    REFUSED(basis, NULL);
+    REFUSED(correlation, 1);
+    options = *defaults[0][0];
     memset(bad, 0, sizeof bad);
     bad[1] = -1;
     CHECK(start(bad) == HYS_NEGATIVE_WEIGHTS);
@@ -91,6 +114,6 @@ int main(void)
           hys_rebase(NULL) == HYS_NULL);
     CHECK(y == 42 && outcome == 42);
     CHECK(hys_adapt_step(&adaptive, model->max, 1, &y, &outcome) == HYS_OK &&
-          outcome == HYS_LEARNED);
+          outcome == HYS_WAITING);
     return 0;
 }

@@ -86,7 +86,7 @@ impl Scenario {
         let plane = self.model.plane()?;
         let weights = vec![1.0; plane.operators()];
         let model = Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive)?;
-        self.adaptation.compensator(&model).map(|_| ())
+        super::options::compensator(&self.adaptation, &model).map(|_| ())
     }
 
     fn check_model(&self) -> Result<()> {

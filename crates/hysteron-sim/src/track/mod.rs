@@ -18,7 +18,7 @@ mod summary;
 mod tune;
 
 pub use kind::Kind;
-pub use options::{AdaptationOptions, LoopOptions, MethodName, ModelOptions, Tuning};
+pub use options::{LoopOptions, ModelOptions, Tuning};
 pub use plant::{Event, PlantOptions, course};
 pub use reference::Reference;
 pub use scenario::Scenario;
@@ -209,7 +209,7 @@ fn controller(
 ) -> Result<Controller> {
     let compensator = match kind {
         Kind::Pid => None,
-        _ if kind.adapts() => Some(scenario.adaptation.compensator(model)?),
+        _ if kind.adapts() => Some(options::compensator(&scenario.adaptation, model)?),
         _ => Some(Compensator::fixed(model)?),
     };
     Controller::new(Scheme {

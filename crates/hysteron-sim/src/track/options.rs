@@ -1,7 +1,7 @@
-//! How the plant's model is identified, what the loops share, and how they learn.
+//! How the plant's model is identified, what the loops share, and what learns in them.
 
 use hysteron::control::Compensator;
-use hysteron::{AdaptOptions, Adaptation, Adaptive, Learner, Model, Plane, Result};
+use hysteron::{AdaptOptions, Learner, Model, Plane, Result};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -60,113 +60,13 @@ pub enum Tuning {
     Step,
 }
 
-/// How the adaptive controllers learn.
+/// A model that learns in the loop of the adaptive controllers.
 ///
-/// What is left out has the default of [`AdaptOptions`](hysteron::AdaptOptions), which follows from
-/// the model that was identified. Ranges are those given there, too.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct AdaptationOptions {
-    /// What follows the error, and how. Default `least-squares`.
-    pub method: MethodName,
-    /// Gain of the gradient methods. Default 0.3.
-    pub gain: Option<f64>,
-    /// Levels between two updates of `increments`. Default 1.
-    pub span: Option<f64>,
-    /// Forgetting factor of `least-squares`. Default 0.999.
-    pub forgetting: Option<f64>,
-    /// Standard deviation of the error of a reading, in the output's unit. Default 2 % of the
-    /// model's range.
-    pub noise: Option<f64>,
-    /// Standard deviation by which a weight may differ from the off-line one, in the output's unit.
-    /// Default such that the sum of the weights may deviate by 30 % of the model's range.
-    pub spread: Option<f64>,
-    /// Distance, in levels, over which deviations of weights go together. Default 1.
-    pub correlation: Option<f64>,
-    /// How freely the offset moves, beside one weight. Default 0.2 √N for N weights with the
-    /// gradient methods; with `least-squares` such that the offset may deviate by 30 % of the
-    /// model's range.
-    pub offset_share: Option<f64>,
-    /// Errors up to this are noise, in the output's unit. Default 0.
-    pub dead_zone: Option<f64>,
-    /// Share by which weights return to the off-line ones with each update. Default 0.
-    pub leakage: Option<f64>,
-    /// Levels that the input has to move before a sample is learned from. Default 0.05.
-    pub movement: Option<f64>,
-    /// Samples after which the weights are judged against the last good ones. Default 256.
-    pub trial: Option<u32>,
-    /// How many times the usual surprise a reading may be off to be learned from; 0: any. Default
-    /// 12.
-    pub gate: Option<f64>,
-    /// Readings in a row beyond the gate that are learned from, where they agree. Default 8.
-    pub burst: Option<u32>,
-}
-
-/// Name of a method of adaptation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MethodName {
-    /// [`Learner::Gradient`].
-    Gradient,
-    /// [`Learner::Increments`].
-    Increments,
-    /// [`Learner::LeastSquares`].
-    #[default]
-    LeastSquares,
-    /// [`Learner::Load`].
-    Load,
-}
-
-impl From<MethodName> for Learner {
-    fn from(name: MethodName) -> Self {
-        match name {
-            MethodName::Gradient => Self::Gradient,
-            MethodName::Increments => Self::Increments,
-            MethodName::LeastSquares => Self::LeastSquares,
-            MethodName::Load => Self::Load,
-        }
-    }
-}
-
-impl AdaptationOptions {
-    /// The estimator's options for `model`. The method [`Load`](MethodName::Load) has none of this
-    /// kind.
-    ///
-    /// # Errors
-    /// [`hysteron::Error::Fit`] for an option that the method does not use. What is out of range is
-    /// refused when an estimator is made.
-    pub fn resolve(&self, model: &Model) -> Result<Adaptation<f64>> {
-        self.options().before(model)
-    }
-
-    /// A model that learns in the loop.
-    ///
-    /// # Errors
-    /// As [`AdaptationOptions::resolve`], and for options out of range.
-    pub(super) fn compensator(&self, model: &Model) -> Result<Compensator> {
-        Ok(match self.method {
-            MethodName::Load => Compensator::load(self.options().adaptive_load(model)?),
-            _ => Compensator::adaptive(Adaptive::new(model, self.resolve(model)?)?),
-        })
-    }
-
-    fn options(&self) -> AdaptOptions {
-        AdaptOptions {
-            learner: self.method.into(),
-            gain: self.gain,
-            span: self.span,
-            forgetting: self.forgetting,
-            noise: self.noise,
-            spread: self.spread,
-            correlation: self.correlation,
-            dead_zone: self.dead_zone,
-            leakage: self.leakage,
-            offset_share: self.offset_share,
-            movement: self.movement,
-            trial: self.trial,
-            gate: self.gate,
-            burst: self.burst,
-            ..AdaptOptions::default()
-        }
-    }
+/// # Errors
+/// As [`AdaptOptions::adaptive`] and [`AdaptOptions::adaptive_load`].
+pub(super) fn compensator(options: &AdaptOptions, model: &Model) -> Result<Compensator> {
+    Ok(match options.learner {
+        Learner::Load => Compensator::load(options.adaptive_load(model)?),
+        _ => Compensator::adaptive(options.adaptive(model)?),
+    })
 }

@@ -1,8 +1,8 @@
 //! A scenario: a plant, what acts on it, a reference, and the controllers to compare.
 
 use super::place::{line_at, line_of};
-use super::{AdaptationOptions, Event, Kind, LoopOptions, ModelOptions, PlantOptions, Reference};
-use hysteron::{Error, Result};
+use super::{Event, Kind, LoopOptions, ModelOptions, PlantOptions, Reference};
+use hysteron::{AdaptOptions, Error, Result};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -50,7 +50,7 @@ pub struct Scenario {
     pub shared: LoopOptions,
     /// How the adaptive ones learn.
     #[serde(default)]
-    pub adaptation: AdaptationOptions,
+    pub adaptation: AdaptOptions,
     /// The controllers; all of them where none is named.
     #[serde(default = "Kind::all")]
     pub controllers: Vec<Kind>,

@@ -1,8 +1,8 @@
 //! Controllers compared on both simulated plants, in short runs.
 
 use crate::loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario};
-use hysteron::Progress;
-use hysteron_sim::track::{Comparison, Kind, track};
+use hysteron::{AdaptOptions, Learner, Progress};
+use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 
 fn rmse(found: &Comparison, kind: Kind, window: usize) -> f64 {
     let place = found.controllers.iter().position(|k| *k == kind).unwrap();
@@ -35,6 +35,61 @@ fn inverse_beats_pid_and_adaptation_the_fixed_inverse_on_the_spring() {
 fn inverse_beats_pid_and_adaptation_the_fixed_inverse_on_the_relays() {
     let step = "[[disturbance]]\nat_s = 25\nload_n = 10.0";
     compare(RELAYS, RELAYS_SINE, step);
+}
+
+/// With the defaults, and with each learner by its name.
+#[test]
+fn every_learner_runs_in_a_scenario() {
+    let base = SPRING
+        .lines()
+        .filter(|line| !line.starts_with("adaptation"));
+    let base: Vec<&str> = base.collect();
+    let (base, step) = (
+        base.join("\n"),
+        "[[disturbance]]\nat_s = 920\nload_n = 10.0",
+    );
+    let kinds = r#"controllers = ["inverse-pid", "adaptive-pid"]"#;
+    let run = |learner: Option<Learner>| {
+        let named = learner.map_or(String::new(), |learner| {
+            format!("adaptation.method = \"{learner}\"\n")
+        });
+        let text = [&base, named.as_str(), kinds, SPRING_SINE, step];
+        let found = track(&scenario(&text), Progress::NONE).unwrap();
+        let last = found.windows.len() - 1;
+        let each = [Kind::AdaptivePid, Kind::InversePid].map(|kind| rmse(&found, kind, last));
+        println!("{learner:?}: {each:.3?}");
+        each
+    };
+    for learner in Learner::ALL {
+        let [adaptive, fixed] = run(Some(learner));
+        // What learns nothing restarts its inverse where the target turns; increments follow the
+        // noise of a loop.
+        let most = match learner {
+            Learner::Refit | Learner::Drift | Learner::LeastSquares => 1.0,
+            _ => 2.0,
+        };
+        assert!(adaptive < most * fixed, "{learner}: {adaptive} {fixed}");
+    }
+    assert_eq!(run(None), run(Some(Learner::Refit)));
+}
+
+/// A model with a thermal body learns its weights in the loop. A warmer room is a shift, which
+/// `load` follows: here a refit is no better than the model left alone.
+#[test]
+fn a_refit_runs_behind_a_thermal_body() {
+    let mut wire = Scenario::load("wire").unwrap();
+    (wire.seeds, wire.adaptation) = (1, AdaptOptions::default());
+    wire.controllers = vec![Kind::InversePid, Kind::AdaptivePid];
+    let found = track(&wire, Progress::NONE).unwrap();
+    for w in 0..found.windows.len() {
+        let [fixed, adaptive] =
+            [Kind::InversePid, Kind::AdaptivePid].map(|kind| rmse(&found, kind, w));
+        println!(
+            "{}: fixed {fixed:.3}, refit {adaptive:.3}",
+            found.windows[w].name
+        );
+        assert!(adaptive < 4.0 * fixed, "{w}: {adaptive} {fixed}");
+    }
 }
 
 #[test]

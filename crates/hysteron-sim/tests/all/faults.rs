@@ -3,10 +3,10 @@
 //! that never had the fault.
 
 use crate::loops::{Known, rms};
+use hysteron::Model;
 use hysteron::control::{
     Action, Compensator, Controller, Disturbance, LoopStatus, Reference, Scheme, SimulatedPlant,
 };
-use hysteron::{Adaptive, Model};
 use hysteron_sim::track::PlantOptions;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -67,10 +67,8 @@ struct Course {
 }
 
 fn controller(known: &Known, with: With) -> Controller {
-    let adapting = |model: &Model| {
-        let adaptation = known.scenario.adaptation.resolve(model).unwrap();
-        Compensator::adaptive(Adaptive::new(model, adaptation).unwrap())
-    };
+    let adapting =
+        |model: &Model| Compensator::adaptive(known.scenario.adaptation.adaptive(model).unwrap());
     let compensator = match with {
         With::Pid => None,
         With::Fixed => Some(Compensator::fixed(&known.model).unwrap()),

@@ -30,6 +30,28 @@ fn the_built_in_scenarios_are_scenarios() {
 }
 
 #[test]
+fn learners_refuse_what_they_do_not_have() {
+    let whole = text(&[SPRING, SPRING_SINE]);
+    let method = "method = \"least-squares\"";
+    for (to, named) in [
+        ("method = \"gradient\"", "take `increments`"),
+        ("method = \"newton\"", "one of fixed, refit"),
+        (
+            "method = \"refit\"",
+            "`forgetting` is an option of `drift`, `least-squares`",
+        ),
+        (
+            "method = \"least-squares\"\nadaptation.gain = 0.3",
+            "`gain` is an option of `increments`, not of `least-squares`",
+        ),
+        ("method = \"least-squares\"\nadaptation.gian = 0.3", "gian"),
+    ] {
+        let said = refusal(&whole.replace(method, to));
+        assert!(said.contains(named), "{to}: {said}");
+    }
+}
+
+#[test]
 fn a_refusal_names_the_line() {
     let whole = text(&[SPRING, SPRING_SINE]);
     let line_of =

@@ -2,16 +2,23 @@
 
 use super::refit::{Refit, Refitter};
 use crate::error::{Error, Result};
-use crate::model::{Model, OperatorState, Sign};
+use crate::model::{Model, OperatorState, Operators, Sample, Sign, State, Wanted};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
-    Adaptation, Channel, Estimator, Learning, Method, estimator_len, estimator_len_of_basis,
-    table_len,
+    Adaptation, Channel, Estimator, Learning, Method, Outcome, estimator_len,
+    estimator_len_of_basis, table_len,
 };
-use hysteron_core::{Solution, Target};
+use hysteron_core::{Solution, StageState, Stages};
 
 /// A [`Model`] whose weights and offset follow the plant, with its state.
+///
+/// Stages around the operators stay as they are. Those in front, such as a thermal body, give the
+/// operators' input. Those behind, such as creep, a lag or an output curve, are undone: the
+/// operators learn from the output that they must have given. So noise of a reading behind a lag is
+/// larger for the learner, by the time constant over the time step. What the learner adds to the
+/// offset stands in front of these stages, too: at rest it passes creep and lag, and it shifts the
+/// knots of a curve.
 ///
 /// ```
 /// use hysteron::{Adaptation, Adaptive, Method, Model, Operator, Plane, Sign};
@@ -34,15 +41,22 @@ pub struct Adaptive {
     offline: Model,
     core: hysteron_core::Model<f64, Vec<f64>>,
     /// State at the measured input.
-    state: OperatorState,
+    state: State,
     /// State of the inverse, at the inputs that it asked for.
-    wanted: OperatorState,
+    wanted: State,
+    /// What the stages behind the operators remember of the measured output; `None` before the
+    /// first sample.
+    measured: Option<StageState<f64>>,
+    /// The sums at the knots of the output curve, at the present offset; empty without one.
+    knots: Vec<f64>,
     learner: Learns,
 }
 
 /// What finds the weights.
 #[derive(Debug, Clone)]
 enum Learns {
+    /// Nothing.
+    Fixed,
     /// From sample to sample.
     Estimator {
         estimator: Box<Estimator<f64, Vec<f64>>>,
@@ -55,11 +69,20 @@ enum Learns {
 }
 
 impl Adaptive {
+    /// A model that does not change, for a place where others learn.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for a model that depends on a load.
+    pub fn fixed(model: &Model) -> Result<Self> {
+        Self::over(model, operators(model)?.core.clone(), Learns::Fixed)
+    }
+
     /// Adapts all weights of `model` and its offset. It starts with all operators off.
     ///
     /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`] for options out of range and for negative weights;
-    /// [`Error::Fit`] for a model with so many levels that the method needs more than 4 GiB.
+    /// [`Error::Core`] for options out of range and for negative weights; [`Error::Fit`] for a model
+    /// that depends on a load, and for one with so many levels that the method needs more than
+    /// 4 GiB.
     pub fn new(model: &Model, options: Adaptation<f64>) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
         let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
@@ -95,14 +118,14 @@ impl Adaptive {
     /// # Errors
     /// As [`Adaptive::new`].
     pub fn refitting(model: &Model, options: Refit) -> Result<Self> {
-        let plane = *model.plain()?.plane();
+        let plane = *operators(model)?.plane();
         check_memory(MATRICES * plane.operators().pow(2))?;
         let weights = model.weights();
         let table = vec![0.0; table_len(plane.levels())];
         let core = hysteron_core::Model::new(plane, model.operator(), weights, table)?;
         // Its inverse exists only with weights of zero or above.
         core.inverse()?;
-        let refitter = Refitter::new(model, options)?;
+        let refitter = Refitter::new(&model.within(), options)?;
         Self::over(model, core, Learns::Refitter(Box::new(refitter)))
     }
 
@@ -138,37 +161,125 @@ impl Adaptive {
         core: hysteron_core::Model<f64, Vec<f64>>,
         learner: Learns,
     ) -> Result<Self> {
-        let mut state = model.plain()?.start();
-        core.rebase(&mut state)?;
+        let mut state = model.off();
+        core.rebase(&mut state.operators)?;
         Ok(Self {
             offline: model.clone(),
             core,
             wanted: state.clone(),
             state,
+            measured: None,
+            knots: model.stages().behind.curve.sums.to_vec(),
             learner,
         })
     }
 
-    /// Moves to `input`, returns the output expected there, and learns from the output `measured`.
+    /// Moves to a sample, returns the output expected there, and learns from the output `measured`.
+    /// A plain number is a sample with that input; a model with a stage that depends on time needs
+    /// the time since the sample before.
+    ///
+    /// ```
+    /// use hysteron::{Adaptive, CreepTerm, Model, Operator, Plane, Refit, Sample, Sign};
+    /// let plane = Plane::new(20.0, 80.0, 5)?;
+    /// let model = |weight: f64| {
+    ///     let model = Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive)?;
+    ///     model.with_after(&[CreepTerm { coefficient: 0.1, tau: 2.0 }], 0.0)
+    /// };
+    /// let mut adaptive = Adaptive::refitting(&model(1.0)?, Refit::default())?;
+    /// let (plant, mut state) = (model(1.5)?, model(1.5)?.start());
+    /// let mut error = f64::MAX;
+    /// for n in 0..1000 {
+    ///     let input = 50.0 - 40.0 * (0.05 * f64::from(n)).cos();
+    ///     let sample = Sample { dt: Some(0.1), ..input.into() };
+    ///     error = adaptive.step(sample, plant.step(&mut state, sample)?.output)?.error;
+    /// }
+    /// assert!(error.abs() < 0.01);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::Core`] for numbers that are not finite; then nothing is changed.
-    pub fn step(&mut self, input: f64, measured: f64) -> Result<Learning<f64>> {
+    /// As [`Model::step`]; [`Error::Core`] for a measured output that is not finite;
+    /// [`Error::Thermal`] where time stands still and the model has a lag. Then nothing is changed.
+    pub fn step(&mut self, sample: impl Into<Sample>, measured: f64) -> Result<Learning<f64>> {
+        let sample = self.accepted(sample.into())?;
+        if self.offline.is_plain() {
+            return self.learn(sample.input, measured);
+        }
+        if !measured.is_finite() {
+            return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
+        }
+        let (mut there, stages) = (self.state.clone(), self.stages());
+        let expected = stages.step(&self.core, &mut there.operators, &mut there.stages, sample);
+        let expected = expected.map_err(|error| self.offline.worded(error))?;
+        let dt = sample.dt.unwrap_or(0.0);
+        let offline = self.offline.stages();
+        let (seen, after) = offline.undo_after(self.measured, dt, measured);
+        if !seen.is_finite() {
+            let what = "time stands still, which a model with a lag cannot have while it learns";
+            return Err(Error::Thermal(what.into()));
+        }
+        let learning = self.learn(there.operators.input(), seen)?;
+        (self.state.stages, self.measured) = (there.stages, Some(after));
+        Ok(Learning {
+            output: expected.output,
+            error: measured - expected.output,
+            ..learning
+        })
+    }
+
+    /// A step of the operators: `measured` is the output in front of the stages behind them.
+    fn learn(&mut self, input: f64, measured: f64) -> Result<Learning<f64>> {
         let factor = self.sign().factor();
         let raw = factor * measured;
+        let state = &mut self.state.operators;
         let learning = match &mut self.learner {
+            Learns::Fixed => {
+                let offset = factor * self.offline.offset();
+                fixed(&self.core, state, input, (raw, offset))?
+            }
             Learns::Estimator { estimator, .. } => {
-                estimator.step(&mut self.core, &mut self.state, input, raw)?
+                estimator.step(&mut self.core, state, input, raw)?
             }
-            Learns::Refitter(refitter) => {
-                refitter.step(&mut self.core, &mut self.state, input, raw)?
-            }
+            Learns::Refitter(refitter) => refitter.step(&mut self.core, state, input, raw)?,
         };
+        self.follow();
         Ok(Learning {
             output: factor * learning.output,
             error: factor * learning.error,
             ..learning
         })
+    }
+
+    /// A sample that the model takes.
+    fn accepted(&self, sample: Sample) -> Result<Sample> {
+        match sample.load {
+            None => Ok(sample),
+            Some(_) => Err(crate::model::no_load()),
+        }
+    }
+
+    /// The stages, at the present offset.
+    fn stages(&self) -> Stages<'_, f64> {
+        let mut stages = self.offline.stages();
+        match self.knots.is_empty() {
+            true => stages.offset += self.sign().factor() * stages.behind.settled(self.moved()),
+            false => stages.behind.curve.sums = &self.knots,
+        }
+        stages
+    }
+
+    /// By how much the offset has moved in front of the stages behind the operators, without sign.
+    fn moved(&self) -> f64 {
+        self.level() - self.sign().factor() * self.offline.offset()
+    }
+
+    /// Lets the knots of the output curve follow the offset.
+    fn follow(&mut self) {
+        let moved = self.moved();
+        let own = self.offline.stages().behind.curve.sums;
+        for (knot, own) in self.knots.iter_mut().zip(own) {
+            *knot = own - moved;
+        }
     }
 
     /// Runs [`Adaptive::step`] through samples, as many as the shorter series has.
@@ -196,33 +307,60 @@ impl Adaptive {
         pairs().enumerate().map(step).collect()
     }
 
-    /// Moves to `input` and returns the output expected there, without learning.
+    /// Moves to a sample and returns the output expected there, without learning.
     ///
     /// # Errors
-    /// [`Error::Core`] for an input that is not finite; then nothing is changed.
-    pub fn simulate(&mut self, input: f64) -> Result<f64> {
-        let sum = self.core.step(&mut self.state, input)?.output;
+    /// As [`Model::step`]; then nothing is changed.
+    pub fn simulate(&mut self, sample: impl Into<Sample>) -> Result<f64> {
+        let sample = self.accepted(sample.into())?;
+        let output = match self.offline.is_plain() {
+            true => {
+                let sum = self.core.step(&mut self.state.operators, sample.input)?;
+                self.sign().factor() * (sum.output + self.level())
+            }
+            false => {
+                let mut there = self.state.clone();
+                let State {
+                    operators, stages, ..
+                } = &mut there;
+                let step = self.stages().step(&self.core, operators, stages, sample);
+                let output = step.map_err(|error| self.offline.worded(error))?.output;
+                self.measured = Some(there.stages);
+                self.state = there;
+                output
+            }
+        };
         if let Learns::Refitter(refitter) = &mut self.learner {
-            refitter.follow(&self.state);
+            refitter.follow(&self.state.operators);
         }
-        Ok(self.sign().factor() * (sum + self.level()))
+        Ok(output)
     }
 
-    /// The output expected at the current input.
+    /// The output expected at the present input, if no time passes.
     #[must_use]
     pub fn output(&self) -> f64 {
-        self.sign().factor() * (self.core.output(&self.state) + self.level())
+        let (factor, sum) = (
+            self.sign().factor(),
+            self.core.output(&self.state.operators),
+        );
+        if self.offline.is_plain() {
+            return factor * (sum + self.level());
+        }
+        let output = self.stages().offset + factor * sum;
+        let past = Some(self.state.stages).filter(StageState::is_started);
+        self.stages().after(past, 0.0, output).0
     }
 
-    /// Finds the input that gives `target` with the current weights. The inverse moves there from
+    /// Finds the input for what is wanted with the current weights. The inverse moves there from
     /// its own state, because the reference and the plant are at different points.
     ///
     /// # Errors
-    /// [`Error::Core`] for a target that is not finite; then nothing is changed.
-    pub fn solve(&mut self, target: Target<f64>) -> Result<Solution<f64>> {
-        let offset = self.level();
-        let core = &self.core;
-        invert(core, self.offline.sign(), offset, &mut self.wanted, target)
+    /// As [`crate::Inverse::step`]; then nothing is changed.
+    pub fn solve(&mut self, wanted: impl Into<Wanted>) -> Result<Solution<f64>> {
+        let mut state = self.wanted.clone();
+        let solution = self.solve_from(&mut state, wanted.into())?;
+        self.wanted = state;
+        Ok(solution)
     }
 
     /// Sets the state of the inverse to that of the measured input. Otherwise, turning points that
@@ -237,13 +375,31 @@ impl Adaptive {
     ///
     /// # Errors
     /// As [`Adaptive::solve`].
-    pub(crate) fn solve_from(
-        &self,
-        state: &mut OperatorState,
-        target: Target<f64>,
-    ) -> Result<Solution<f64>> {
-        let offset = self.level();
-        invert(&self.core, self.sign(), offset, state, target)
+    pub(crate) fn solve_from(&self, state: &mut State, wanted: Wanted) -> Result<Solution<f64>> {
+        if wanted.load.is_some() {
+            return Err(crate::model::no_load());
+        }
+        let State {
+            operators, stages, ..
+        } = state;
+        self.core.rebase(operators)?;
+        let inverse = self.core.inverse()?;
+        if self.offline.is_plain() {
+            let (sign, target) = (self.sign(), wanted.target);
+            let raw = sign.factor() * target.output - self.level();
+            let solution = inverse.step(operators, sign.inward(target, raw))?;
+            return Ok(sign.outward(solution));
+        }
+        let wanted = hysteron_core::Wanted {
+            target: wanted.target,
+            dt: wanted.dt,
+            load: None,
+            drive: self.offline.drive_range(),
+            horizon: 0.0,
+            temperature: wanted.temperature,
+        };
+        let solution = self.stages().invert(&inverse, operators, stages, wanted);
+        solution.map_err(|error| self.offline.worded(error))
     }
 
     /// The current weights, row by row.
@@ -252,6 +408,7 @@ impl Adaptive {
         let (estimator, basis) = match &self.learner {
             Learns::Estimator { estimator, basis } => (estimator, basis),
             Learns::Refitter(refitter) => return refitter.weights(),
+            Learns::Fixed => return self.offline.weights().to_vec(),
         };
         let parameters = estimator.parameters();
         if basis.is_empty() {
@@ -269,7 +426,12 @@ impl Adaptive {
     /// The current output with every operator off.
     #[must_use]
     pub fn offset(&self) -> f64 {
-        self.sign().factor() * self.level()
+        let factor = self.sign().factor();
+        if self.offline.is_plain() {
+            return factor * self.level();
+        }
+        let stages = self.stages();
+        stages.offset + factor * stages.behind.settled(0.0)
     }
 
     /// The offset without the sign.
@@ -277,19 +439,26 @@ impl Adaptive {
         match &self.learner {
             Learns::Estimator { estimator, .. } => estimator.offset(),
             Learns::Refitter(refitter) => refitter.offset(),
+            Learns::Fixed => self.sign().factor() * self.offline.offset(),
         }
     }
 
-    /// The current model, with the names of the off-line model.
+    /// The current model, with the stages and the names of the off-line model.
     ///
     /// # Errors
     /// As [`Model::new`].
     pub fn model(&self) -> Result<Model> {
-        let Model { input, output, .. } = self.offline.clone();
         let (operator, plane) = (self.offline.operator(), *self.offline.plane());
-        let mut model = Model::new(operator, plane, self.weights(), self.offset(), self.sign())?;
-        (model.input, model.output) = (input, output);
-        Ok(model)
+        let offset = match self.offline.is_plain() {
+            true => self.offset(),
+            false => self.stages().offset,
+        };
+        let operators = Operators::new(operator, plane, self.weights(), offset, self.sign())?;
+        let model = self.offline.changed(operators);
+        match self.knots.is_empty() {
+            true => Ok(model),
+            false => model.with_behind([("curve_sums", self.knots.clone())]),
+        }
     }
 
     /// The model before adaptation.
@@ -298,9 +467,9 @@ impl Adaptive {
         &self.offline
     }
 
-    /// The current state of the operators.
+    /// The current state of operators and stages.
     #[must_use]
-    pub fn state(&self) -> &OperatorState {
+    pub fn state(&self) -> &State {
         &self.state
     }
 
@@ -309,8 +478,8 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn reset(&mut self) -> Result<()> {
-        self.realign();
-        self.core.reset_off(&mut self.state)?;
+        self.begin();
+        self.core.reset_off(&mut self.state.operators)?;
         self.align();
         Ok(())
     }
@@ -321,8 +490,8 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn saturate(&mut self) -> Result<()> {
-        self.realign();
-        self.core.reset_on(&mut self.state)?;
+        self.begin();
+        self.core.reset_on(&mut self.state.operators)?;
         self.align();
         Ok(())
     }
@@ -332,6 +501,7 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.freeze(frozen),
             Learns::Refitter(refitter) => refitter.freeze(frozen),
+            Learns::Fixed => {}
         }
     }
 
@@ -342,6 +512,7 @@ impl Adaptive {
         match &self.learner {
             Learns::Estimator { estimator, .. } => estimator.stuck(),
             Learns::Refitter(refitter) => refitter.stuck(),
+            Learns::Fixed => None,
         }
     }
 
@@ -350,6 +521,7 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.keep(),
             Learns::Refitter(refitter) => refitter.keep(),
+            Learns::Fixed => {}
         }
     }
 
@@ -362,8 +534,10 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.roll_back(&mut self.core),
             Learns::Refitter(refitter) => refitter.roll_back(&mut self.core)?,
+            Learns::Fixed => {}
         }
-        Ok(self.core.rebase(&mut self.state)?)
+        self.follow();
+        Ok(self.core.rebase(&mut self.state.operators)?)
     }
 
     /// Refits now, with what has come since the last refit. A learner that learns from sample to
@@ -375,15 +549,19 @@ impl Adaptive {
     pub fn refit(&mut self) -> Result<()> {
         if let Learns::Refitter(refitter) = &mut self.learner {
             refitter.refit(&mut self.core)?;
-            self.core.rebase(&mut self.state)?;
+            self.core.rebase(&mut self.state.operators)?;
+            self.follow();
         }
         Ok(())
     }
 
-    fn realign(&mut self) {
+    /// Others set the state of the operators; the stages are at rest.
+    fn begin(&mut self) {
+        (self.state.stages, self.measured) = (StageState::default(), None);
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.realign(),
             Learns::Refitter(refitter) => refitter.realign(),
+            Learns::Fixed => {}
         }
     }
 
@@ -392,18 +570,32 @@ impl Adaptive {
     }
 }
 
-/// The inverse of a core model with an offset and the sign of the model.
-fn invert(
+/// A step of a model that does not change. `measured` and `offset` are without the sign.
+fn fixed(
     core: &hysteron_core::Model<f64, Vec<f64>>,
-    sign: Sign,
-    offset: f64,
     state: &mut OperatorState,
-    target: Target<f64>,
-) -> Result<Solution<f64>> {
-    let raw = sign.factor() * target.output - offset;
-    core.rebase(state)?;
-    let solution = core.inverse()?.step(state, sign.inward(target, raw))?;
-    Ok(sign.outward(solution))
+    input: f64,
+    (measured, offset): (f64, f64),
+) -> Result<Learning<f64>> {
+    if !measured.is_finite() {
+        return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
+    }
+    let step = core.step(state, input)?;
+    let output = step.output + offset;
+    Ok(Learning {
+        output,
+        error: measured - output,
+        outcome: Outcome::Frozen,
+        clipped: step.clipped,
+    })
+}
+
+/// The operators of a model at one load.
+fn operators(model: &Model) -> Result<&Operators> {
+    match &model.load {
+        None => Ok(model.operators()),
+        Some(load) => Err(load.one_is_needed()),
+    }
 }
 
 /// Largest memory of an estimator, in bytes.
@@ -434,7 +626,7 @@ fn check_memory(numbers: usize) -> Result<()> {
 
 /// A core model with the memory that the method needs.
 fn renewable(model: &Model, method: Method<f64>) -> Result<hysteron_core::Model<f64, Vec<f64>>> {
-    let model = model.plain()?;
+    let model = operators(model)?;
     let tables = match method {
         Method::Increments { .. } => 2,
         _ => 1,

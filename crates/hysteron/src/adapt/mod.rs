@@ -1,7 +1,8 @@
 //! Adaptation: lets a model follow a plant that changes.
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
-//! output, then learned from. `options` are its settings. `adaptive` is the model that learns
+//! output, then learned from. `learner` is the table of learners and their options, `options` what
+//! these come to for a model. `adaptive` is the model that learns
 //! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
 //! drift; or by a `refit` to the samples of a `window`, from their `sums`. `load` and `unknown_load`
 //! do the same for the shift of an unknown load. `counts` counts what was done with the samples,
@@ -11,6 +12,7 @@ mod adaptive;
 mod basis;
 mod counts;
 mod drift;
+mod learner;
 mod load;
 mod options;
 mod refit;
@@ -23,8 +25,9 @@ pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
 pub use drift::Drift;
+pub use learner::{ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Learner};
 pub use load::AdaptiveLoad;
-pub use options::{AdaptOptions, EstimatorOptions, Learner};
+pub use options::EstimatorOptions;
 pub use refit::Refit;
 pub use stuck::Stuck;
 pub use unknown_load::ShiftFound;
@@ -415,6 +418,7 @@ impl EstimatorOptions {
     /// The options as a JSON object.
     fn described(&self) -> serde_json::Value {
         match self {
+            Self::Fixed => json!({}),
             Self::Weights(adaptation) => described(adaptation),
             Self::Refit(refit) => json!(refit),
             Self::Shift(options) => json!({
@@ -434,7 +438,6 @@ impl EstimatorOptions {
 /// The options as a JSON object: those of the method, and those that guard against bad readings.
 fn described(options: &Adaptation<f64>) -> serde_json::Value {
     let mut object = match options.method {
-        Method::Gradient { gain } => json!({ "gain": gain }),
         Method::Increments { gain, span } => json!({"gain": gain, "span": span}),
         Method::LeastSquares {
             forgetting,

@@ -1,19 +1,18 @@
-//! Options of an adaptation, with defaults that follow from the model and the recording.
+//! What the options of an adaptation come to: defaults follow from the model and the recording.
 
 use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
+use crate::adapt::learner::{AdaptOptions, Learner};
 use crate::adapt::load::AdaptiveLoad;
 use crate::adapt::refit::Refit;
-use crate::adapt::window::Window;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::noise::noise;
 use crate::series::range;
 use hysteron_core::{Adaptation, Method, ShiftOptions};
-use serde::Serialize;
 
-/// Gain of the gradient methods.
+/// Share of an increment's error that is removed.
 const GAIN: f64 = 0.3;
 /// Levels between two updates from increments.
 const SPAN: f64 = 1.0;
@@ -23,7 +22,7 @@ const FORGETTING: [f64; 2] = [0.999, 0.9999];
 /// larger for coefficients, because a few coefficients fit less well and their errors are
 /// correlated between samples.
 const MISFIT: [f64; 2] = [0.02, 0.05];
-/// Share of the offset in the regressor of the gradient methods, relative to all weights together.
+/// How freely the offset moves beside increments, relative to all weights together.
 const OFFSET: f64 = 0.2;
 /// Correlation length of the weights' deviations, in levels.
 const CORRELATION: f64 = 1.0;
@@ -32,113 +31,17 @@ const DEVIATION: f64 = 0.3;
 /// Standard deviation of each coefficient.
 const SHARE: f64 = 0.5;
 
-/// Which parameters are adapted, and by which method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Learner {
-    /// All weights by the normalised gradient.
-    Gradient,
-    /// All weights by the normalised gradient on increments.
-    Increments,
-    /// All weights by recursive least squares.
-    LeastSquares,
-    /// The coefficients of [`crate::DriftBasis`] by recursive least squares.
-    Drift,
-    /// All weights by least squares over the last cycle of the input, again and again. With the
-    /// defaults it has the smallest errors on measured recordings.
-    #[default]
-    Refit,
-    /// The shift of the operators' axis alone, by a Kalman filter: a load that nobody measures.
-    Load,
-}
-
 /// The options that a learner runs with, all of them known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EstimatorOptions {
+    /// Nothing learns.
+    Fixed,
     /// Those of an estimator of weights or coefficients, from sample to sample.
     Weights(Adaptation<f64>),
     /// Those of a windowed refit.
     Refit(Refit),
     /// Those of the estimator of the shift.
     Shift(ShiftOptions<f64>),
-}
-
-/// The options of [`crate::adapt()`]. A field that is `None` follows from the model and the
-/// recording. `Y` is the range of the recording's output or that of the model, whichever is larger.
-/// Single readings far from all others do not count for that range.
-///
-/// | field | default | range | purpose |
-/// | --- | --- | --- | --- |
-/// | `learner` | refit | see [`Learner`] | parameters and method |
-/// | `start` | off | off, on, unknown | state before the first sample |
-/// | `load` | middle of its range | the model's range | load to start at (refit, drift, load) |
-/// | `window` | cycles:1 | see [`Window`] | samples that a refit uses |
-/// | `every` | see the field | 1 or more | samples between two refits |
-/// | `ridge` | 0.1 | above 0, up to 1 | holds weights where they are (refit) |
-/// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
-/// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
-/// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
-/// | `noise` | see the field | above 0 | error of a reading (least squares, load) |
-/// | `spread` | see the field | above 0 | deviation of a parameter (least squares, load) |
-/// | `correlation` | 1 | 0 or more | correlation length (least squares of weights) |
-/// | `dead_zone` | twice the output's [`noise`] | 0 or more | errors that are noise |
-/// | `leakage` | 0 | 0 to 1 | return to the off-line weights |
-/// | `offset_share` | see the field | 0 or more | how freely the offset moves |
-/// | `movement` | 0.05 | 0 or more | levels between samples learned from |
-/// | `trial` | 256 | 1 or more | samples of a trial |
-/// | `gate` | 12 | 0, or 2 or more | rejects wrong readings |
-/// | `burst` | 8 | 1 or more | accepts a real jump |
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct AdaptOptions {
-    /// Which parameters are adapted, and by which method.
-    pub learner: Learner,
-    /// State of the operators before the first sample. Unknown: off or on, whichever gives the
-    /// unadapted model the smaller errors.
-    pub start: Start,
-    /// Load to start at, for [`Learner::Refit`], [`Learner::Drift`] and [`Learner::Load`] with a
-    /// model that depends on a load.
-    pub load: Option<f64>,
-    /// The samples that a refit uses.
-    pub window: Option<Window>,
-    /// Samples between two refits. Default: at each turning point of the input, and where an eighth
-    /// of the window is new.
-    pub every: Option<u32>,
-    /// Strength of the ridge that holds the weights of a refit where they are, relative to the mean
-    /// diagonal element of the window's matrix.
-    pub ridge: Option<f64>,
-    /// Gain of the gradient methods: share of a sample's error that one update removes.
-    pub gain: Option<f64>,
-    /// Levels between two updates from increments.
-    pub span: Option<f64>,
-    /// Forgetting factor of least squares: weight of a sample relative to the next one.
-    pub forgetting: Option<f64>,
-    /// Least squares and load: standard deviation of a reading's error, including the error of the
-    /// model, in the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for
-    /// weights and 5 % for coefficients and the shift.
-    pub noise: Option<f64>,
-    /// Least squares: standard deviation by which a parameter may differ from its off-line value.
-    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for coefficients: 0.5. For the
-    /// shift it is in the input's unit, by default half of what the shift can reach.
-    pub spread: Option<f64>,
-    /// Correlation length of the weights' deviations, in levels.
-    pub correlation: Option<f64>,
-    /// Errors up to this are noise, in the output's unit.
-    pub dead_zone: Option<f64>,
-    /// Share of the way back to the off-line weights with each update.
-    pub leakage: Option<f64>,
-    /// How freely the offset moves, relative to one weight or coefficient. Default of the gradient
-    /// methods: `0.2 √N`. Default of least squares: the offset may deviate by 0.3 `Y`.
-    pub offset_share: Option<f64>,
-    /// Levels that the input has to move before a sample is learned from.
-    pub movement: Option<f64>,
-    /// Number of samples after which the weights are compared with the last good ones.
-    pub trial: Option<u32>,
-    /// A reading is rejected if it is more than this many times as surprising as usual; 0 to accept
-    /// all readings. See [`Adaptation`].
-    pub gate: Option<f64>,
-    /// Number of readings in a row beyond the gate that are taken as a real jump if they agree.
-    /// Also the number of samples on probation at the end.
-    pub burst: Option<u32>,
 }
 
 impl AdaptOptions {
@@ -152,20 +55,12 @@ impl AdaptOptions {
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The options of an estimator for `model` on `recording`.
-    ///
-    /// # Errors
-    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator,
-    /// and for [`Learner::Load`], which learns no weights.
-    pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
-        self.resolve(model, recording)?.estimator()
-    }
-
     /// The options of an estimator for `model` before any measurement. `Y` is the model's range,
     /// and the output is assumed to have no noise.
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`].
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Fixed`], [`Learner::Refit`] and
+    /// [`Learner::Load`], which are no estimators of weights.
     pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
         self.resolved(model, 0.0, 0.0)?.estimator()
     }
@@ -223,8 +118,12 @@ impl AdaptOptions {
 
     /// What learns the weights or the coefficients.
     pub(super) fn learner(&self, model: &Model, options: EstimatorOptions) -> Result<Adaptive> {
-        if let EstimatorOptions::Refit(refit) = options {
-            return Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit);
+        match options {
+            EstimatorOptions::Refit(refit) => {
+                return Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit);
+            }
+            EstimatorOptions::Fixed => return Adaptive::fixed(model),
+            EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => {}
         }
         let adaptation = options.estimator()?;
         match self.learner {
@@ -234,8 +133,13 @@ impl AdaptOptions {
     }
 
     fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<EstimatorOptions> {
-        self.refuse_unused(model)?;
+        self.refuse_unused()?;
+        if self.load.is_some() && model.load.is_none() {
+            let what = "`load`: this model does not depend on a load: leave it out";
+            return Err(Error::Fit(what.into()));
+        }
         Ok(match self.learner {
+            Learner::Fixed => EstimatorOptions::Fixed,
             Learner::Refit => {
                 let usual = Refit::default();
                 EstimatorOptions::Refit(Refit {
@@ -269,7 +173,11 @@ impl AdaptOptions {
 
     /// The options of an estimator of weights or coefficients.
     fn weights(&self, model: &Model, rough: f64, range: f64) -> Adaptation<f64> {
-        let (off, on) = model.output_range();
+        // Of the operators: what is behind them is undone before anything is learned.
+        let (off, on) = match model.load {
+            None => model.within().output_range(),
+            Some(_) => model.output_range(),
+        };
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
         let drift = usize::from(self.learner == Learner::Drift);
@@ -281,13 +189,7 @@ impl AdaptOptions {
             spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
         };
-        let gain = self.gain.unwrap_or(GAIN);
         let method = match self.learner {
-            Learner::Gradient => Method::Gradient { gain },
-            Learner::Increments => Method::Increments {
-                gain,
-                span: self.span.unwrap_or(SPAN),
-            },
             Learner::LeastSquares => {
                 let correlation = self.correlation.unwrap_or(CORRELATION);
                 let spread =
@@ -295,8 +197,11 @@ impl AdaptOptions {
                 least_squares(spread, correlation)
             }
             Learner::Drift => least_squares(SHARE, 0.0),
-            // These learn otherwise.
-            Learner::Refit | Learner::Load => usual.method,
+            // The others learn otherwise.
+            _ => Method::Increments {
+                gain: self.gain.unwrap_or(GAIN),
+                span: self.span.unwrap_or(SPAN),
+            },
         };
         let offset_share = match method {
             Method::LeastSquares { spread, .. } => DEVIATION * span / spread,
@@ -313,53 +218,16 @@ impl AdaptOptions {
             burst: self.burst.unwrap_or(usual.burst),
         }
     }
-
-    fn refuse_unused(&self, model: &Model) -> Result<()> {
-        use Learner::{Drift, Gradient, Increments, LeastSquares, Load, Refit};
-        let is = |learners: &[Learner]| learners.contains(&self.learner);
-        let (steps, squares) = ([Gradient, Increments], [LeastSquares, Drift]);
-        let filters = [LeastSquares, Drift, Load];
-        let starts = is(&[Drift, Refit, Load]) && model.load.is_some();
-        let (refit, estimator) = (is(&[Refit]), !is(&[Refit]));
-        let weights = !is(&[Refit, Load]);
-        let given = [
-            ("load", self.load.is_some(), starts),
-            ("window", self.window.is_some(), refit),
-            ("every", self.every.is_some(), refit),
-            ("ridge", self.ridge.is_some(), refit),
-            ("gain", self.gain.is_some(), is(&steps)),
-            ("span", self.span.is_some(), is(&[Increments])),
-            ("forgetting", self.forgetting.is_some(), is(&squares)),
-            ("noise", self.noise.is_some(), is(&filters)),
-            ("spread", self.spread.is_some(), is(&filters)),
-            (
-                "correlation",
-                self.correlation.is_some(),
-                is(&[LeastSquares]),
-            ),
-            ("dead_zone", self.dead_zone.is_some(), estimator),
-            ("leakage", self.leakage.is_some(), weights),
-            ("offset_share", self.offset_share.is_some(), weights),
-            ("trial", self.trial.is_some(), weights),
-        ];
-        match given.iter().find(|(_, given, used)| *given && !used) {
-            Some((name, ..)) => Err(Error::Fit(format!(
-                "`{name}` means nothing to this method of adaptation: leave it out"
-            ))),
-            None => Ok(()),
-        }
-    }
 }
 
 impl EstimatorOptions {
     fn estimator(self) -> Result<Adaptation<f64>> {
         match self {
             Self::Weights(adaptation) => Ok(adaptation),
-            Self::Refit(_) => Err(Error::Fit(
-                "a refit is no estimator: take another method here".into(),
-            )),
-            Self::Shift(_) => Err(Error::Fit(
-                "the method `load` adapts no weights, but the shift of the axis".into(),
+            Self::Fixed | Self::Refit(_) | Self::Shift(_) => Err(Error::Fit(
+                "this needs a learner that estimates weights: `drift`, `least-squares` or \
+                 `increments`"
+                    .into(),
             )),
         }
     }
@@ -368,7 +236,7 @@ impl EstimatorOptions {
         match self {
             Self::Shift(options) => Ok(options),
             _ => Err(Error::Fit(
-                "only the method `load` estimates the shift".into(),
+                "only the learner `load` estimates the shift".into(),
             )),
         }
     }
@@ -376,6 +244,7 @@ impl EstimatorOptions {
     /// The gate, and the readings in a row that pass it where they agree.
     pub(super) fn gate(self) -> (f64, u32) {
         match self {
+            Self::Fixed => (0.0, 0),
             Self::Weights(Adaptation { gate, burst, .. }) => (gate, burst),
             Self::Refit(Refit { gate, burst, .. }) => (gate, burst),
             Self::Shift(ShiftOptions { gate, burst, .. }) => (gate, burst),

@@ -6,7 +6,7 @@ use crate::identify::{SparseForm, Term};
 use crate::model::OperatorState;
 use crate::series::Turning;
 use hysteron_core::Direction;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -36,7 +36,8 @@ const ANEW: usize = 16;
 /// samples.
 ///
 /// It is written `cycles:1` or `samples:500`, and so it is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
 pub enum Window {
     /// So many of the last cycles of the input, from 1.
     Cycles(usize),
@@ -84,6 +85,14 @@ impl std::str::FromStr for Window {
         let window = window.filter(|window| window.is_usable());
         window
             .ok_or_else(|| Error::Fit(format!("`window` is `{text}`: it must be {}", Self::RANGE)))
+    }
+}
+
+impl TryFrom<String> for Window {
+    type Error = Error;
+
+    fn try_from(text: String) -> Result<Self> {
+        text.parse()
     }
 }
 

@@ -114,14 +114,22 @@ impl Compensator {
                 Ok((learning.output, Some(learning.outcome)))
             }
             (Kind::Adaptive(adaptive), measured) => {
-                self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
+                let offline = adaptive.offline();
+                // Stages in front of the operators have inputs of another kind.
+                let jumps = offline.is_plain() && (input - from).abs() > offline.plane().step();
+                self.resting = match jumps {
                     true => JUMP,
                     false => self.resting.saturating_sub(1),
                 };
-                let Some(measured) = measured.filter(|_| self.resting == 0) else {
-                    return Ok((adaptive.simulate(input)?, None));
+                let sample = Sample {
+                    input,
+                    dt,
+                    load: None,
                 };
-                let learning = adaptive.step(input, measured)?;
+                let Some(measured) = measured.filter(|_| self.resting == 0) else {
+                    return Ok((adaptive.simulate(sample)?, None));
+                };
+                let learning = adaptive.step(sample, measured)?;
                 Ok((learning.output, Some(learning.outcome)))
             }
         }
@@ -150,9 +158,7 @@ impl Compensator {
         }
         let (state, sign) = match &self.kind {
             Kind::Fixed { model, state } => (state.clone(), model.sign()),
-            Kind::Adaptive(adaptive) => {
-                (adaptive.state().clone().into(), adaptive.offline().sign())
-            }
+            Kind::Adaptive(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
             Kind::Load(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
         };
         let wanted = self.wanted.get_or_insert(state);
@@ -186,22 +192,14 @@ impl Compensator {
                 _ => Vec::new(),
             };
         let target = Target::new(target).heading(heading).tolerance(tolerance);
+        let wanted_now = Wanted {
+            dt,
+            ..target.into()
+        };
         match &self.kind {
-            Kind::Fixed { model, .. } => {
-                let wanted_now = Wanted {
-                    dt,
-                    ..target.into()
-                };
-                model.inverse()?.step_ahead(wanted, wanted_now, &after)
-            }
-            Kind::Adaptive(adaptive) => adaptive.solve_from(&mut wanted.operators, target),
-            Kind::Load(adaptive) => {
-                let wanted_now = Wanted {
-                    dt,
-                    ..target.into()
-                };
-                adaptive.solve_from(wanted, wanted_now)
-            }
+            Kind::Fixed { model, .. } => model.inverse()?.step_ahead(wanted, wanted_now, &after),
+            Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, wanted_now),
+            Kind::Load(adaptive) => adaptive.solve_from(wanted, wanted_now),
         }
     }
 

@@ -117,6 +117,16 @@ impl Model {
         model
     }
 
+    /// The same stages around operators that no fit found.
+    #[must_use]
+    pub(crate) fn changed(&self, operators: Operators) -> Self {
+        Self {
+            start: None,
+            fit: None,
+            ..self.around(operators)
+        }
+    }
+
     /// The measured output in front of the stages behind the operators: what these must have given.
     pub(crate) fn before_stages(&self, recording: &Recording) -> Result<Vec<f64>> {
         let stages = self.stages();

@@ -7,9 +7,8 @@ use hysteron::{
     Step, Turning, Window, adapt, plane_of, prepare,
 };
 
-const LEARNERS: [Learner; 5] = [
+const LEARNERS: [Learner; 4] = [
     Learner::Refit,
-    Learner::Gradient,
     Learner::Increments,
     Learner::LeastSquares,
     Learner::Drift,
@@ -60,7 +59,7 @@ fn every_learner_follows_a_plant_with_another_stroke() {
         let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
         let (first, last) = (adapted.thirds[0], adapted.thirds[2]);
         // The plant is the model but for its stroke: what is left after fifty loops is what is
-        // still being learned, and with the gradient methods a long tail of it.
+        // still being learned, and with increments a long tail of it.
         assert!(
             last.adapting.rmse < 0.2 * last.fixed.rmse,
             "{learner:?}: {last:?}"
@@ -223,8 +222,8 @@ fn the_adapted_file_says_how_it_came_about() {
 #[test]
 fn frozen_it_stays_and_what_was_kept_comes_back() {
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
-    let options = by(Learner::LeastSquares).adaptation(&model, &recording);
-    let mut adaptive = Adaptive::new(&model, options.unwrap()).unwrap();
+    let options = by(Learner::LeastSquares);
+    let mut adaptive = options.adaptive_after(&model, &recording).unwrap();
     let learn = |adaptive: &mut Adaptive| {
         for (input, output) in recording.input.iter().zip(&recording.output) {
             adaptive.step(*input, *output).unwrap();
@@ -467,7 +466,7 @@ fn what_cannot_be_adapted_is_refused() {
     assert!(refused(&model, &recording, gain).contains("`gain`"));
     let gain = AdaptOptions {
         gain: Some(2.5),
-        ..by(Learner::Gradient)
+        ..by(Learner::Increments)
     };
     assert!(refused(&model, &recording, gain).contains("gain"));
     let load = AdaptOptions {

@@ -7,6 +7,7 @@ mod common;
 mod faulty;
 
 mod adaptation;
+mod adaptive_stages;
 mod arrow_copy;
 mod batch;
 mod believed;

@@ -9,9 +9,8 @@ use hysteron::{
 
 /// What a converter of twelve bits says when its wire is off.
 const FULL_SCALE: f64 = 4095.0;
-const LEARNERS: [Learner; 5] = [
+const LEARNERS: [Learner; 4] = [
     Learner::Refit,
-    Learner::Gradient,
     Learner::Increments,
     Learner::LeastSquares,
     Learner::Drift,
@@ -146,7 +145,7 @@ fn five_wrong_readings_in_a_loop_do_not_move_the_next_prediction() {
 #[test]
 fn a_controller_says_which_reading_was_rejected() {
     let recording = recorded(&spring(10.0));
-    let adaptive = by(Learner::Gradient).adaptive(&spring(10.0)).unwrap();
+    let adaptive = by(Learner::LeastSquares).adaptive(&spring(10.0)).unwrap();
     let mut controller = Controller::new(Scheme {
         interval_s: 1.0,
         compensator: Some(Compensator::adaptive(adaptive)),
@@ -191,7 +190,7 @@ fn whatever_learns_is_told_to_be_no_better_where_nothing_changed() {
         *output += 0.3 * (1.7 * n as f64).sin();
     }
     for learner in LEARNERS {
-        let steps = matches!(learner, Learner::Gradient | Learner::Increments);
+        let steps = learner == Learner::Increments;
         let squares = matches!(learner, Learner::LeastSquares | Learner::Drift);
         let options = AdaptOptions {
             gain: steps.then_some(1.5),
@@ -223,7 +222,7 @@ fn a_model_that_ends_worse_is_told() {
     let options = AdaptOptions {
         gain: Some(1.5),
         dead_zone: Some(0.0),
-        ..by(Learner::Gradient)
+        ..by(Learner::Increments)
     };
     let adapted = adapt(&spring(10.0), &recording, &options, Progress::NONE).unwrap();
     let late = adapted.late.unwrap();
@@ -234,7 +233,7 @@ fn a_model_that_ends_worse_is_told() {
     let better = adapt(
         &spring(10.0),
         &recorded(&spring(13.5)),
-        &by(Learner::Gradient),
+        &by(Learner::Increments),
         Progress::NONE,
     )
     .unwrap();
