@@ -78,7 +78,7 @@ impl World {
         let memory = self.memory[room * ROOM / 8..].as_mut_ptr().cast();
         // SAFETY: all fields are numbers.
         let mut options: HysteronAdaptation = unsafe { std::mem::zeroed() };
-        let method = METHODS[self.rng.random_range(0..3)];
+        let method = METHODS[self.rng.random_range(0..METHODS.len())];
         // SAFETY: live memory of the sizes given.
         let (code, twin) = unsafe {
             assert_eq!(
