@@ -87,7 +87,7 @@ impl<T> From<T> for Sample<T> {
 /// How many factors [`Rates`] has.
 pub const RATE_NUMBERS: usize = 2 + behind::FACTORS;
 
-/// The factors of all stages for one time step ([`Stages::rates`]). For a fixed sample time they
+/// The factors of all stages for one time step ([`crate::Stages::rates`]). For a fixed sample time they
 /// are computed once.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates<T> {

@@ -79,7 +79,7 @@ impl Model {
     /// The model at one load. The result does not depend on a load.
     ///
     /// # Errors
-    /// [`Error::Fit`] if the model does not depend on a load, or for a load outside its range.
+    /// [`crate::Error::Fit`] if the model does not depend on a load, or for a load outside its range.
     pub fn at_load(&self, load: f64) -> Result<Self> {
         let Some(dependence) = &self.load else {
             return Err(no_load());

@@ -40,7 +40,8 @@ impl Model {
     /// ([`State::input`]), to the last bit. The stages are at rest with the next sample.
     ///
     /// # Errors
-    /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.
+    /// [`crate::Error::Core`] for turning points that are not nested and for an input that is not
+    /// finite.
     ///
     /// ```
     /// # use hysteron::{Model, Operator, Plane, Sign};
@@ -79,9 +80,9 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// - [`Error::Core`] for an input that is not finite or a state of another model.
-    /// - [`Error::Thermal`] for a thermal body without `dt`, or a negative `dt`.
-    /// - [`Error::Fit`] for a load that is missing, out of range, or given to a model that has
+    /// - [`crate::Error::Core`] for an input that is not finite or a state of another model.
+    /// - [`crate::Error::Thermal`] for a thermal body without `dt`, or a negative `dt`.
+    /// - [`crate::Error::Fit`] for a load that is missing, out of range, or given to a model that has
     ///   none.
     ///
     /// After an error the state is unchanged.
@@ -93,7 +94,7 @@ impl Model {
     /// The operators' states `γ_ij` in `[0, 1]`, in the order of the weights.
     ///
     /// # Errors
-    /// As [`Operators::operator_states`].
+    /// As [`crate::Operators::operator_states`].
     pub fn operator_states(&self, state: &State) -> Result<Vec<f64>> {
         self.operators.operator_states(&state.operators)
     }
