@@ -10,7 +10,7 @@ use crate::recording::Recording;
 use crate::series::range;
 
 /// Candidates for an input, evenly over the range.
-const CANDIDATES: usize = 16;
+const CANDIDATES: usize = 12;
 
 /// Refinements, each with half the step of the one before.
 const REFINED: usize = 5;
@@ -30,16 +30,17 @@ pub(super) fn search(
     let step = (high - low) / CANDIDATES as f64;
     let once = |x: f64| [x, x];
     let from_top = |x: f64| [high, x];
-    let mut found = Vec::new();
-    for shape in [&once as &dyn Fn(f64) -> [f64; 2], &from_top] {
-        let mut best = (low, error(shape(low))?);
-        for n in 1..=CANDIDATES {
-            best = lesser(best, low + step * n as f64, |x| error(shape(x)))?;
+    let shapes = [&once as &dyn Fn(f64) -> [f64; 2], &from_top];
+    let mut found = [(low, f64::INFINITY); 2];
+    for (best, shape) in found.iter_mut().zip(shapes) {
+        for n in 0..=CANDIDATES {
+            *best = lesser(*best, low + step * n as f64, |x| error(shape(x)))?;
         }
-        let (x, least) = refined(best, step, (low, high), |x| error(shape(x)))?;
-        found.push((shape(x), least));
     }
-    let single = found[usize::from(found[1].1 < found[0].1)];
+    let better = usize::from(found[1].1 < found[0].1);
+    let shape = shapes[better];
+    let (x, least) = refined(found[better], step, (low, high), |x| error(shape(x)))?;
+    let single = (shape(x), least);
     // Each number in turn.
     let ([a, b], least) = single;
     let lower = refined((b, least), step, (low, high), |x| error([a, x]))?;
@@ -49,6 +50,23 @@ pub(super) fn search(
         true => both,
         false => single,
     })
+}
+
+/// The rest near `from` with the least `error`, which is a finer one than that of the search.
+///
+/// # Errors
+/// Those of `error`.
+pub(super) fn polished(
+    from: [f64; 2],
+    (low, high): (f64, f64),
+    mut error: impl FnMut([f64; 2]) -> Result<f64>,
+) -> Result<[f64; 2]> {
+    let [first, second] = from;
+    let shape = |x: f64| [if first == second { x } else { first }, x];
+    let step = (high - low) / CANDIDATES as f64;
+    let start = (second, error(from)?);
+    let (x, _) = refined(start, step, (low, high), |x| error(shape(x)))?;
+    Ok(shape(x))
 }
 
 type Rated = (f64, f64);

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::changed::thin;
 use crate::identify::choose::validate::{Candidates, Choice, choose};
 use crate::identify::options::{FitOptions, SOME_SMOOTHNESS};
-use crate::identify::rest::search;
+use crate::identify::rest::{polished, search};
 use crate::identify::weights::problem::Problem;
 use crate::model::Start;
 use crate::progress::Progress;
@@ -19,8 +19,9 @@ pub(crate) const MANY_OPEN: f64 = 0.05;
 /// [`Criterion::is_worth`](crate::model::Criterion::is_worth).
 const WORTH: f64 = 0.02;
 
-/// A fit for the search of a rest sees about so many samples: its answer is one input.
-const SEARCHED: usize = 4000;
+/// The fits in the search of a rest see about so many samples, and have at most so many levels
+/// until the rest is nearly found: their answer is one input.
+const SEARCHED: (usize, usize) = (1500, 14);
 
 /// The options with the start that the recordings ask for: off where the first samples determine
 /// nearly all operators; otherwise a rest, whose input has the least error of a fit. An unknown
@@ -67,7 +68,7 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Fit
 /// As [`crate::Fit::run`].
 pub(crate) fn at_rest(recordings: &[Recording], options: &FitOptions) -> Result<FitOptions> {
     let samples: usize = recordings.iter().map(Recording::len).sum();
-    let stride = samples.div_ceil(SEARCHED);
+    let stride = samples.div_ceil(SEARCHED.0);
     let recordings: Vec<Recording> = recordings
         .iter()
         .map(|recording| thin(recording.clone(), stride))
@@ -83,13 +84,19 @@ pub(crate) fn at_rest(recordings: &[Recording], options: &FitOptions) -> Result<
         smooth: options.smooth.at_least(SOME_SMOOTHNESS),
         ..with([0.0; 2])
     };
-    let error = |rest| {
-        tried.rest = Some(rest);
+    let mut error = |levels, rest| {
+        (tried.levels, tried.rest) = (levels, Some(rest));
         let mut problem = Problem::new(&recordings, &tried)?;
         let fitted = problem.solve(None, Progress::NONE)?;
         tried.sign = Some(fitted.sign);
         Ok(fitted.solution.residual.iter().map(|r| r * r).sum())
     };
-    let (rest, _) = search(all.unwrap_or_default(), error)?;
-    Ok(with(rest))
+    let (all, coarse) = (all.unwrap_or_default(), options.levels.min(SEARCHED.1));
+    let (rest, _) = search(all, |rest| error(coarse, rest))?;
+    if coarse == options.levels {
+        return Ok(with(rest));
+    }
+    Ok(with(polished(rest, all, |rest| {
+        error(options.levels, rest)
+    })?))
 }
