@@ -144,6 +144,8 @@ class Action:
     def adapted(self) -> bool: ...
     @property
     def rejected(self) -> bool: ...
+    @property
+    def stuck(self) -> bool: ...
 
 @final
 class Adapted:
@@ -167,7 +169,7 @@ class Adaptive:
         cls,
         model: Model,
         *,
-        method: Literal["refit", "drift", "least-squares", "gradient", "increments"] = "refit",
+        method: Literal["fixed", "refit", "drift", "least-squares", "increments"] = "refit",
         start: Literal["off", "on"] = "off",
         window: str | None = None,
         every: int | None = None,
@@ -208,15 +210,16 @@ class Adaptive:
     def reset(self, *, on: bool = False) -> None: ...
     def roll_back(self) -> None: ...
     def run(self, input: ArrayLike, measured: ArrayLike) -> LearningTable: ...
-    def simulate(self, input: float) -> float: ...
+    def simulate(self, input: float, *, dt: float | None = None) -> float: ...
     def solve(
         self,
         target: float,
         *,
+        dt: float | None = None,
         heading: _Heading = None,
         tolerance: float = 0.0,
     ) -> tuple[float, int]: ...
-    def step(self, input: float, measured: float) -> Learning: ...
+    def step(self, input: float, measured: float, *, dt: float | None = None) -> Learning: ...
     def __copy__(self) -> Adaptive: ...
     def __deepcopy__(self, _memo: object) -> Adaptive: ...
 
@@ -537,7 +540,7 @@ class Model:
         recording: _Recordings,
         output: ArrayLike | None = None,
         *,
-        start: Literal["fitted", "off", "on", "rest", "unknown"] = "fitted",
+        start: Literal["fitted", "off", "on", "unknown"] = "fitted",
         time: _Times | None = None,
         load: ArrayLike | None = None,
     ) -> Evaluation: ...
@@ -825,7 +828,7 @@ def adapt(
     output: ArrayLike | None = None,
     *,
     time: _Times | None = None,
-    method: Literal["refit", "drift", "least-squares", "gradient", "increments", "load"] = "refit",
+    method: Literal["fixed", "refit", "drift", "least-squares", "increments", "load"] = "refit",
     start: Literal["off", "on", "unknown"] = "off",
     window: str | None = None,
     every: int | None = None,
@@ -852,7 +855,7 @@ def compare(
     recording: _Recordings,
     output: ArrayLike | None = None,
     *,
-    start: Literal["fitted", "off", "on", "rest", "unknown"] = "fitted",
+    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
     time: ArrayLike | None = None,
     load: ArrayLike | None = None,
 ) -> list[Forward]: ...
@@ -885,7 +888,7 @@ def fit(
     smooth: float | tuple[float, float] | Literal['auto'] = "auto",
     ridge: float = 1e-06,
     robust: bool = True,
-    start: Literal["auto", "off", "on", "rest", "unknown"] = "auto",
+    start: Literal["auto", "off", "on", "unknown"] = "auto",
     sign: Literal[1, -1] | None = None,
     offset: float | None = None,
     load_law: Literal["shift", "weights"] = "shift",
@@ -917,7 +920,7 @@ def fit_fleet(
     smooth: float | tuple[float, float] | Literal['auto'] = "auto",
     ridge: float = 1e-06,
     robust: bool = True,
-    start: Literal["auto", "off", "on", "rest", "unknown"] = "auto",
+    start: Literal["auto", "off", "on", "unknown"] = "auto",
     sign: Literal[1, -1] | None = None,
     offset: float | None = None,
     load_law: Literal["shift", "weights"] = "shift",
@@ -948,7 +951,7 @@ def left_out(
     solver: Literal["nnls", "ols"] = "nnls",
     smooth: float | tuple[float, float] | Literal['auto'] = "auto",
     ridge: float = 1e-06,
-    start: Literal["auto", "off", "on", "rest", "unknown"] = "auto",
+    start: Literal["auto", "off", "on", "unknown"] = "auto",
     sign: Literal[1, -1] | None = None,
     offset: float | None = None,
     load_degree: int | Literal['auto'] = "auto",

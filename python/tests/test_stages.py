@@ -326,7 +326,7 @@ def test_laws_of_the_load():
         ({"lag": ()}, TypeError, "`lag` is"),
         ({"load_degree": "two"}, TypeError, "'auto' is needed"),
         ({"thermal": "second-order"}, ValueError, "'first-order'"),
-        ({"start": "fitted"}, ValueError, "'off', 'on', 'unknown'"),
+        ({"start": "fitted"}, ValueError, "'off', 'on', 'rest', 'unknown'"),
     ],
 )
 def test_options_that_are_refused(options, error, message):

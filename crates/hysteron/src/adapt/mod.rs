@@ -345,7 +345,10 @@ fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(bool,
         // A model that adapts starts as it is, with its operators off or on.
         Start::Off | Start::Fitted => Ok((false, from(false)?)),
         Start::On => Ok((true, from(true)?)),
-        Start::Rest | Start::Unknown => {
+        Start::Rest => Err(Error::Fit(
+            "no rest is found for a model that adapts: take the start off, on or unknown".into(),
+        )),
+        Start::Unknown => {
             let (off, on) = (from(false)?, from(true)?);
             Ok(match error(&on) < error(&off) {
                 true => (true, on),
