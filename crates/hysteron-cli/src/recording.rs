@@ -36,14 +36,22 @@ fn tell(path: &Path, notes: &[Note], segments: &[Segment]) {
         let rows = segments
             .iter()
             .map(|part| format!("{} to {}", part.first, part.last));
+        let named: Vec<String> = rows.take(NAMED).collect();
+        let others = match segments.len() - named.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
         say(format_args!(
-            "{}: {} recordings of one experiment, {}",
+            "{}: {} recordings of one experiment, {}{others}",
             path.display(),
             segments.len(),
-            rows.collect::<Vec<_>>().join(", ")
+            named.join(", ")
         ));
     }
 }
+
+/// So many segments are named by their lines.
+const NAMED: usize = 8;
 
 /// Before what is said of one recording of several.
 pub(crate) fn which(n: usize, count: usize) -> String {

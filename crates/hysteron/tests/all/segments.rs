@@ -53,6 +53,31 @@ fn alike(a: &Errors, b: &Errors) {
     assert!((percent(a) - percent(b)).abs() <= 1e-12 * percent(b));
 }
 
+/// A load is no clock: it may go back and jump, and its rows are one recording.
+#[test]
+fn a_load_without_a_time_begins_no_segment() {
+    let mut rng = ChaCha8Rng::seed_from_u64(30);
+    let folder = tempfile::tempdir().unwrap();
+    for _ in 0..15 {
+        let (_, mut recordings) = experiment(&mut rng, 1);
+        let recording = &mut recordings[0];
+        let load = |_| match rng.random_range(0..10) {
+            0 => rng.random_range(-500.0..500.0),
+            _ => rng.random_range(49.0..51.0_f64),
+        };
+        recording.time = Some((0..recording.len()).map(load).collect());
+        let path = folder.path().join("run.csv");
+        std::fs::write(&path, table(&recordings)).unwrap();
+        let columns = Columns {
+            load: Some("t"),
+            ..Columns::new("x", "y")
+        };
+        let (segments, notes) = Recording::read_segments(&path, columns, Repair::Refuse).unwrap();
+        assert_eq!((segments.len(), notes.len()), (1, 0));
+        assert_eq!(segments[0].recording.load, recordings[0].time);
+    }
+}
+
 #[test]
 fn a_table_of_segments_is_as_many_recordings() {
     let mut rng = ChaCha8Rng::seed_from_u64(29);

@@ -242,7 +242,8 @@ fn read_parts(
     let others = with_others.then(|| Others::new(&table, all));
     let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
     let mut mended = samples.mend(&table, time_at, repair)?;
-    let starts = match parted {
+    // Without a time there is none that goes back, and no gap.
+    let starts = match parted && time_at.is_some() {
         true => samples.starts(&mut mended),
         false => mended.back,
     };

@@ -220,11 +220,8 @@ impl Samples {
         Ok(Mended { notes, back })
     }
 
-    /// Where segments begin, of rows some of which go `back`; with notes on long gaps.
+    /// Where segments begin, of rows with a time, some of which go `back`; with notes on long gaps.
     pub(super) fn starts(&self, mended: &mut Mended) -> Vec<usize> {
-        if self.series.len() <= TIME {
-            return Vec::new();
-        }
         let mut long = Vec::new();
         let starts = starts(&self.series, std::mem::take(&mut mended.back), &mut long);
         if !long.is_empty() {
