@@ -352,7 +352,7 @@ class FitSummary(_Result):
         Strengths of the smoothness.
     ridge : float
         Ridge on the weights.
-    start : {'off', 'on', 'unknown'}
+    start : {'off', 'on', 'rest', 'unknown'}
         State of the operators before each recording.
     open_at_start : int
         Number of operators whose state the first sample of a recording does not determine.

@@ -53,7 +53,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         Pulls weights that the data hardly move to zero.
     robust : bool
         Whether readings that do not belong to the recording are found and have no weight.
-    start : {'auto', 'off', 'on', 'unknown'}
+    start : {'auto', 'off', 'on', 'rest', 'unknown'}
         State of the operators before the first sample. `fit` estimates 'unknown', and `predict`
         then starts where the model does: `pyhysteron.Model.fitted_start`, or every operator off.
     sign : {None, 1, -1}

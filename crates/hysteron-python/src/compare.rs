@@ -21,7 +21,7 @@ use pyo3::types::{PyDict, PyList};
 ///     A list is one experiment: the models start anew in each recording. An array is the input, and
 ///     `output` is needed.
 /// output : array_like, shape (n,), optional
-/// start : {'fitted', 'off', 'on', 'unknown'}
+/// start : {'fitted', 'off', 'on', 'rest', 'unknown'}
 ///     Where the models start, as for `Model.evaluate`.
 /// time, load : array_like, shape (n,), optional
 ///     For an input and an output given as arrays. `time` as in `Recording`.

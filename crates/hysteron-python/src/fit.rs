@@ -47,7 +47,7 @@ use pyo3::types::{PyDict, PyString};
 ///     element of the Gram matrix.
 /// robust : bool
 ///     Whether readings that do not belong to the recording are found and have no weight.
-/// start : {'auto', 'off', 'on', 'unknown'}
+/// start : {'auto', 'off', 'on', 'rest', 'unknown'}
 ///     State of the operators before the first sample. 'auto': 'off' or 'on', unless 'unknown'
 ///     predicts clearly better.
 /// sign : {None, 1, -1}

@@ -178,7 +178,7 @@ impl Model {
     ///     A list is one experiment: the model starts anew in each recording, series follow each
     ///     other, and errors are over all. An array is the input, and `output` is needed.
     /// output : array_like, shape (n,), optional
-    /// start : {'fitted', 'off', 'on', 'unknown'}
+    /// start : {'fitted', 'off', 'on', 'rest', 'unknown'}
     ///     State of the operators before the first sample. 'fitted': as for `simulate`. 'unknown':
     ///     the state that explains the beginning of the recording best.
     /// time, load : array_like, shape (n,), optional
