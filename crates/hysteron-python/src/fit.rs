@@ -48,8 +48,8 @@ use pyo3::types::{PyDict, PyString};
 /// robust : bool
 ///     Whether readings that do not belong to the recording are found and have no weight.
 /// start : {'auto', 'off', 'on', 'rest', 'unknown'}
-///     State of the operators before the first sample. 'auto': 'off' or 'on', unless 'unknown'
-///     predicts clearly better.
+///     State of the operators before the first sample. 'rest': all off, then at an input that the
+///     fit finds. 'auto': 'rest', unless 'unknown' predicts clearly better.
 /// sign : {None, 1, -1}
 ///     Direction of the output; None for the one that fits better.
 /// offset : float, optional

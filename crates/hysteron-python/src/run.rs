@@ -179,8 +179,9 @@ impl Model {
     ///     other, and errors are over all. An array is the input, and `output` is needed.
     /// output : array_like, shape (n,), optional
     /// start : {'fitted', 'off', 'on', 'rest', 'unknown'}
-    ///     State of the operators before the first sample. 'fitted': as for `simulate`. 'unknown':
-    ///     the state that explains the beginning of the recording best.
+    ///     State of the operators before the first sample. 'fitted': as for `simulate`. 'rest':
+    ///     all off, then at the input that explains the beginning of the recording best. 'unknown':
+    ///     the state that does.
     /// time, load : array_like, shape (n,), optional
     ///     For an input and an output given as arrays.
     ///
