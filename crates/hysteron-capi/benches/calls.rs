@@ -2,6 +2,7 @@
 //! hysteron-capi`.
 #![allow(clippy::unwrap_used)]
 
+#[allow(dead_code, reason = "the tests take the rest")]
 #[path = "../../hysteron-core/tests/common/mod.rs"]
 mod common;
 

@@ -1,6 +1,7 @@
 //! The cost of a sample that is learned from: `cargo bench -p hysteron-core --bench adaptation`.
 #![allow(clippy::unwrap_used)]
 
+#[allow(dead_code, reason = "the tests take the rest")]
 #[path = "../tests/common/mod.rs"]
 mod common;
 mod measure;

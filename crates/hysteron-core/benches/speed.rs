@@ -1,6 +1,7 @@
 //! Speed as ratios within one run: `cargo bench -p hysteron-core`.
 #![allow(clippy::unwrap_used)]
 
+#[allow(dead_code, reason = "the tests take the rest")]
 #[path = "../tests/common/mod.rs"]
 mod common;
 

@@ -1,5 +1,5 @@
 //! Random models, and input sequences that are hard for a memory of turning points.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(clippy::unwrap_used)]
 
 pub mod stages;
 

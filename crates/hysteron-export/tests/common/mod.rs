@@ -1,5 +1,5 @@
 //! Models exported, compiled and run.
-#![allow(clippy::unwrap_used, dead_code)]
+#![allow(clippy::unwrap_used)]
 
 pub mod programs;
 pub mod reference;

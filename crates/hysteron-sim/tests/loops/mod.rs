@@ -1,5 +1,5 @@
 //! Loops on the simulated plants, for the tests of control, faults and comparisons.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(clippy::unwrap_used)]
 
 use hysteron::control::{Gains, InnerLoop, Scheme, SimulatedPlant};
 use hysteron::{Model, Policy, Progress};

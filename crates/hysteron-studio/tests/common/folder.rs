@@ -1,5 +1,5 @@
 //! The studio as a folder, and a small server that gives files and nothing else.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(clippy::unwrap_used)]
 
 use crate::recordings::skip::skipped;
 use hysteron_studio::{STATIC_SESSION, static_page};

@@ -1,5 +1,5 @@
 //! A studio that runs in this process, and plain HTTP.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(clippy::unwrap_used)]
 
 use hysteron_studio::Server;
 use std::io::{Read, Write};

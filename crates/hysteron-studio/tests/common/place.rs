@@ -1,6 +1,6 @@
 //! Where the page comes from: the studio's server, or a folder that any server of files gives. Both
 //! run the same tests.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(clippy::unwrap_used)]
 
 use crate::chromium::{Chromium, Tab, browser};
 use crate::common::Studio;

@@ -321,7 +321,7 @@ impl<'a> Fit<'a> {
         if let (true, Some(prior)) = (self.auto_start, &self.prior) {
             options.start = prior.start();
         } else if self.auto_start {
-            // Of these recordings most begin at rest.
+            // Most recordings with a body or a load begin with all operators off.
             options.start = match plain {
                 true => Start::Unknown,
                 false => Start::Off,

@@ -1,7 +1,7 @@
 //! The state before a recording, as a history of turning points that a real actuator can have had.
 
 use crate::error::Result;
-use crate::model::{FittedStart, Model, Surroundings};
+use crate::model::{FittedStart, Model, State, Surroundings};
 use crate::recording::Recording;
 use crate::series::range;
 
@@ -79,6 +79,13 @@ pub(super) fn head(recording: &Recording, samples: usize) -> Recording {
     }
 }
 
+/// The sum of the squared errors over a recording, from a state.
+pub(super) fn squares(model: &Model, mut from: State, recording: &Recording) -> Result<f64> {
+    let (output, _) = model.run_over(&mut from, recording)?;
+    let pairs = recording.output.iter().zip(&output);
+    Ok(pairs.map(|(y, h)| (y - h) * (y - h)).sum())
+}
+
 /// Turning points before the first sample, and the squared error with them.
 #[derive(Clone)]
 struct History {
@@ -98,16 +105,14 @@ impl Search<'_> {
     fn rated(&self, points: Vec<f64>) -> Result<History> {
         let mut all = points.clone();
         all.push(self.first);
-        let Ok(mut state) = self.model.restore(&all, self.input) else {
+        let Ok(state) = self.model.restore(&all, self.input) else {
             // Rounding made the points cross.
             return Ok(History {
                 points,
                 error: f64::INFINITY,
             });
         };
-        let (output, _) = self.model.run_over(&mut state, self.recording)?;
-        let pairs = self.recording.output.iter().zip(&output);
-        let error = pairs.map(|(y, h)| (y - h) * (y - h)).sum();
+        let error = squares(self.model, state, self.recording)?;
         Ok(History { points, error })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::changed::on_grid;
-use crate::identify::history::find_start;
+use crate::identify::history::{self, find_start};
 use crate::identify::options::FitOptions;
 use crate::identify::rest::after;
 use crate::model::{Model, Start};
@@ -33,7 +33,7 @@ pub(super) fn with_start(
         Start::Rest => {
             let inputs = options.rest.unwrap_or_default();
             let seen = inputs.map(on_grid(model.spacing(), model.plane()));
-            let rested = after(&model, &seen)?;
+            let rested = after(&model, seen)?;
             let mut model = match rested == model.off() {
                 true => model.with_start(None)?,
                 false => model.starting_from(&rested)?,
@@ -74,9 +74,7 @@ pub(super) fn with_start(
 fn squares(model: &Model, recordings: &[Recording]) -> Result<f64> {
     let mut sum = 0.0;
     for recording in recordings {
-        let (output, _) = model.run_over(&mut model.start(), recording)?;
-        let pairs = recording.output.iter().zip(&output);
-        sum += pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>();
+        sum += history::squares(model, model.start(), recording)?;
     }
     Ok(sum)
 }

@@ -1,5 +1,6 @@
 //! The options of a fit.
 
+use crate::identify::initial::Initial;
 use crate::model::{LoadCurves, Sign, Smooth, Solver, Start};
 use hysteron_core::Operator;
 
@@ -212,6 +213,16 @@ impl FitOptions {
         Prior {
             smooth: self.smooth,
             ridge: self.ridge,
+        }
+    }
+
+    /// The state before each recording, of the operators whose state is known or does not matter:
+    /// with an unknown start, off.
+    pub(crate) fn initial(&self) -> Initial {
+        match (self.start, self.rest) {
+            (Start::On, _) => Initial::On,
+            (Start::Rest, Some(rest)) => Initial::After(rest),
+            _ => Initial::Off,
         }
     }
 

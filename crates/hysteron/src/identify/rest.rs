@@ -1,10 +1,11 @@
 //! The rest before a recording: all operators off, then one input or two, then the first sample.
 //!
-//! One number says more than it seems. At the lowest input the operators stay off, and at the
-//! highest they are all on. A second number is taken only where it explains clearly more.
+//! One number tells a lot: at the lowest input the operators stay off, and at the highest they are
+//! all on. A second number is taken only where it explains clearly more.
 
 use crate::error::Result;
-use crate::identify::history::beginning;
+use crate::identify::history::{beginning, head, squares};
+use crate::identify::initial::Initial;
 use crate::model::{Model, State, Surroundings};
 use crate::recording::Recording;
 use crate::series::range;
@@ -42,7 +43,7 @@ pub(super) fn search(
     let (x, least) = refined(found[better], step, (low, high), |x| error(shape(x)))?;
     let single = (shape(x), least);
     // Each number in turn.
-    let ([a, b], least) = single;
+    let [a, b] = single.0;
     let lower = refined((b, least), step, (low, high), |x| error([a, x]))?;
     let upper = refined((a, lower.1), step, (low, high), |x| error([x, lower.0]))?;
     let both = ([upper.0, lower.0], upper.1);
@@ -94,12 +95,8 @@ fn refined(
 }
 
 /// The state of a model's operators after a rest, given as they see it.
-pub(super) fn after(model: &Model, rest: &[f64]) -> Result<State> {
-    let operators = model.operators();
-    let mut state = operators.start();
-    for input in rest {
-        operators.step(&mut state, *input)?;
-    }
+pub(super) fn after(model: &Model, rest: [f64; 2]) -> Result<State> {
+    let state = Initial::After(rest).state(&model.operators().core)?;
     let turning_points: Vec<f64> = state.turning_points().collect();
     model.restore(&turning_points, state.input())
 }
@@ -115,12 +112,8 @@ pub(crate) fn find_rest(model: &Model, recording: &Recording) -> Result<(State, 
         Surroundings::from_recording(model, recording),
     )?;
     let samples = beginning(&seen);
-    let head = super::history::head(recording, samples);
-    let error = |rest: [f64; 2]| {
-        let (output, _) = model.run_over(&mut after(model, &rest)?, &head)?;
-        let pairs = head.output.iter().zip(&output);
-        Ok(pairs.map(|(y, h)| (y - h).powi(2)).sum())
-    };
+    let head = head(recording, samples);
+    let error = |rest| squares(model, after(model, rest)?, &head);
     let (rest, _) = search(range(&seen), error)?;
-    Ok((after(model, &rest)?, samples))
+    Ok((after(model, rest)?, samples))
 }

@@ -88,7 +88,7 @@ impl Groups {
         }
         let label = self.table.label_text(self.label);
         let before = self.table.budget().left();
-        let mut samples = Samples::none(self.asked.len(), None);
+        let mut samples = Samples::none((self.asked.len(), self.time_at.is_some()), None);
         loop {
             self.take(&mut samples)?;
             if !self.table.advance()? {
@@ -119,7 +119,10 @@ impl Groups {
             if !here.is_some_and(|(label, _)| self.table.has_label(self.label, label)) {
                 let label = self.table.label_text(self.label);
                 last = *places.entry(label.clone()).or_insert_with(|| {
-                    groups.push((label, Samples::none(self.asked.len(), None)));
+                    groups.push((
+                        label,
+                        Samples::none((self.asked.len(), self.time_at.is_some()), None),
+                    ));
                     groups.len() - 1
                 });
             }

@@ -240,10 +240,14 @@ fn read_parts(
         _ => Quantity::named("load"),
     };
     let others = with_others.then(|| Others::new(&table, all));
-    let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
+    let mut samples = Samples::gather(
+        &mut table,
+        (&asked, time_at.is_some()),
+        interpolated.as_deref(),
+        others,
+    )?;
     let mut mended = samples.mend(&table, time_at, repair)?;
-    // Without a time there is none that goes back, and no gap.
-    let starts = match parted && time_at.is_some() {
+    let starts = match parted {
         true => samples.starts(&mut mended),
         false => mended.back,
     };
@@ -252,7 +256,7 @@ fn read_parts(
         let places = samples.places.iter().collect();
         of_rows.push((NoteKind::Interpolated, places));
     }
-    if let (Some(at), Some(time)) = (time_at, samples.series.get(super::columns::TIME)) {
+    if let (Some(at), Some(time)) = (time_at, samples.time()) {
         table.check_time_unit(at, time);
     }
     let remarks = table.remarks().cloned().map(Note::File);

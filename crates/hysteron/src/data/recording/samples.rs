@@ -19,6 +19,8 @@ const FIRST: usize = 64;
 pub(super) struct Samples {
     /// The series in the order in which they were asked for.
     pub(super) series: Vec<Vec<f64>>,
+    /// Whether one of them is the time.
+    timed: bool,
     /// Position of each row.
     pub(super) places: Positions,
     /// All cells of the rows, if they are wanted.
@@ -35,11 +37,11 @@ impl Samples {
     /// replaces the column of the output. `others`, if given, collects whole rows.
     pub(super) fn gather(
         table: &mut TableReader,
-        asked: &[Column],
+        (asked, timed): (&[Column], bool),
         output: Option<&[f64]>,
         others: Option<Others>,
     ) -> Result<Self> {
-        let mut samples = Self::none(asked.len(), others);
+        let mut samples = Self::none((asked.len(), timed), others);
         let mut outputs = output.map(|output| output.iter());
         while table.advance()? {
             samples.push(table, asked, outputs.as_mut().map(Iterator::next))?;
@@ -53,10 +55,11 @@ impl Samples {
         Ok(samples)
     }
 
-    /// No rows yet, of `count` series.
-    pub(super) fn none(count: usize, others: Option<Others>) -> Self {
+    /// No rows yet, of `count` series, with a time among them or not.
+    pub(super) fn none((count, timed): (usize, bool), others: Option<Others>) -> Self {
         Self {
             series: vec![Vec::new(); count],
+            timed,
             places: Positions::default(),
             others,
             ragged: Places::default(),
@@ -112,7 +115,7 @@ impl Samples {
         let capacity = self.series.first().map_or(0, Vec::capacity);
         if count == capacity {
             let more = capacity.max(FIRST);
-            let kept = match self.series.len() > TIME {
+            let kept = match self.timed {
                 true => size_of::<usize>() + RUN,
                 false => 0,
             };
@@ -153,7 +156,7 @@ impl Samples {
         note(NoteKind::Ragged, &self.ragged);
         note(NoteKind::Dropped, &self.missing);
         let mut back = Vec::new();
-        if time_at.is_some() {
+        if self.timed {
             let History {
                 kept,
                 back: begins,
@@ -211,7 +214,7 @@ impl Samples {
             let place = back.first().map(|n| self.places.at(*n));
             return Err(table.fault_at(place, time_at, problem));
         }
-        if let (Some(_), Some((_, gaps))) = (time_at, self.series.get(TIME).and_then(|t| gaps(t)))
+        if let Some((_, gaps)) = self.time().and_then(gaps)
             && !gaps.is_empty()
         {
             let places = gaps.into_iter().map(|n| self.places.at(n)).collect();
@@ -220,8 +223,16 @@ impl Samples {
         Ok(Mended { notes, back })
     }
 
-    /// Where segments begin, of rows with a time, some of which go `back`; with notes on long gaps.
+    /// The time of each row. A load stands in its place where there is no time.
+    pub(super) fn time(&self) -> Option<&[f64]> {
+        self.timed.then(|| &self.series[TIME][..])
+    }
+
+    /// Where segments begin, of rows some of which go `back`; with notes on long gaps.
     pub(super) fn starts(&self, mended: &mut Mended) -> Vec<usize> {
+        if !self.timed {
+            return Vec::new();
+        }
         let mut long = Vec::new();
         let starts = starts(&self.series, std::mem::take(&mut mended.back), &mut long);
         if !long.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::weights::problem::Problem;
-use crate::model::{INTERVAL, LoadPart, Operators, Sign, Start, add_variance};
+use crate::model::{INTERVAL, LoadPart, Operators, Sign, add_variance};
 
 /// Share of the samples that the band holds.
 const SHARE: f64 = 0.95;
@@ -45,13 +45,7 @@ fn variance(factors: &[LoadPart], problem: &Problem, sign: Sign) -> Result<Vec<f
         let weights = factor.weights.clone();
         let operators = Operators::new(options.operator, plane, weights, factor.offset, sign)?;
         for range in &experiment.recordings {
-            let mut state = match options.start {
-                Start::On => operators.saturated(),
-                _ => operators.start(),
-            };
-            for input in options.rest.into_iter().flatten() {
-                operators.step(&mut state, input)?;
-            }
+            let mut state = options.initial().state(&operators.core)?;
             let own = &mut variance[range.clone()];
             add_variance(
                 &operators,

@@ -8,10 +8,8 @@ use crate::identify::doubt::spectrum::Spectrum;
 use crate::identify::options::Prior;
 use crate::identify::weights::gram::Gram;
 use crate::identify::weights::problem::{Fitted, Problem};
-use crate::identify::weights::rows::Initial;
 use crate::identify::weights::solve::{NormalEquations, Penalised};
 use crate::model::Confidence;
-use crate::model::Start;
 use crate::progress::Progress;
 use crate::series::noise::noise;
 use faer::linalg::solvers::Solve;
@@ -90,11 +88,7 @@ pub(crate) fn estimate(
         .collect();
     // With an unknown start, the classes are those from off. Undetermined initial states count
     // among the unknowns.
-    let start = match options.start {
-        Start::On => Initial::On,
-        Start::Rest => options.rest.map_or(Initial::Off, Initial::After),
-        _ => Initial::Off,
-    };
+    let start = options.initial();
     Ok(Some(Confidence {
         branches: experiment.branches.len(),
         rank: spectrum.rank(),

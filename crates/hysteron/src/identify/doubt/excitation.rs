@@ -8,7 +8,7 @@
 //! part of the weight can be moved to other operators without a change of the output.
 
 use crate::error::{Error, Result};
-use crate::identify::weights::rows::Initial;
+use crate::identify::initial::Initial;
 use crate::identify::weights::sparse::{SparseForm, Square};
 use crate::model::Excitation;
 use crate::model::Plane;

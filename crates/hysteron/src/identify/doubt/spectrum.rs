@@ -2,9 +2,9 @@
 
 use crate::error::Result;
 use crate::identify::doubt::excitation::centred_gram;
+use crate::identify::initial::Initial;
 use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::problem::check_gram;
-use crate::identify::weights::rows::Initial;
 use crate::identify::weights::sparse::SparseForm;
 use crate::model::Plane;
 use crate::recording::Recording;

@@ -47,12 +47,7 @@ impl<'a> Problem<'a> {
             1
         };
         check_gram(plane.operators() * experiment.parts.len() * sides)?;
-        let regressor = Regressor::new(
-            plane,
-            options.operator,
-            &experiment,
-            (options.start, options.rest),
-        )?;
+        let regressor = Regressor::new(plane, options, &experiment)?;
         Ok(Self {
             experiment,
             regressor,

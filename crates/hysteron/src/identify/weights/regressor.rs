@@ -12,18 +12,18 @@
 //! reduce the error.
 
 use crate::error::Result;
+use crate::identify::initial::Initial;
+use crate::identify::options::FitOptions;
 use crate::identify::weights::column::Column;
 use crate::identify::weights::corner_gram::{CornerGram, CornerSums, OfBlocks};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::{Gram, MANY};
 use crate::identify::weights::layout::{Block, Layout};
-use crate::identify::weights::rows::Initial;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::sparse::{OPEN, SparseForm, Square};
 use crate::model::Plane;
 use crate::model::Start;
 use crate::progress::Progress;
-use hysteron_core::Operator;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -44,24 +44,23 @@ pub(crate) struct Regressor {
 }
 
 impl Regressor {
-    pub(crate) fn new(
-        plane: Plane,
-        operator: Operator,
-        experiment: &Experiment,
-        (start, rest): (Start, Option<[f64; 2]>),
-    ) -> Result<Self> {
-        let form = SparseForm::new(plane, operator)?;
+    pub(crate) fn new(plane: Plane, options: &FitOptions, experiment: &Experiment) -> Result<Self> {
+        let form = SparseForm::new(plane, options.operator)?;
         let mut regressor = Self {
             form,
             open: Vec::new(),
             open_at_start: 0,
             columns: Vec::new(),
-            known: match (start, rest) {
-                (Start::Rest, Some(rest)) => Initial::After(rest),
-                _ => Initial::Off,
+            known: match options.initial() {
+                // Columns say themselves that they start on.
+                Initial::On => Initial::Off,
+                known => known,
             },
         };
-        let on = if start == Start::On { u64::MAX } else { 0 };
+        let on = match options.start {
+            Start::On => u64::MAX,
+            _ => 0,
+        };
         let operators = regressor.form.operators();
         let all =
             |on| move |part| (0..operators).map(move |operator| Column { part, operator, on });
@@ -69,7 +68,7 @@ impl Regressor {
         regressor.columns = parts.clone().flat_map(all(on)).collect();
         let open = regressor.undetermined(experiment)?;
         regressor.open_at_start = open.iter().filter(|on| **on != 0).count();
-        if start == Start::Unknown {
+        if options.start == Start::Unknown {
             let on = |part| {
                 let some = open.iter().enumerate().filter(|(_, on)| **on != 0);
                 some.map(move |(operator, &on)| Column { part, operator, on })

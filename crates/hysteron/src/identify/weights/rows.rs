@@ -2,17 +2,9 @@
 //! current branch, which are constant along it, and three factors of the branch itself.
 
 use crate::error::Result;
+use crate::identify::initial::Initial;
 use crate::model::OperatorState;
-use hysteron_core::{Model, Turn, turn_capacity};
-
-/// State of the operators before the first sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Initial {
-    Off,
-    On,
-    /// Off, and then these inputs one after the other.
-    After([f64; 2]),
-}
+use hysteron_core::Model;
 
 /// A non-zero element of `W`: its column and its value.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +34,7 @@ impl<'a> Rows<'a> {
         place: &'a [u32],
         from: Initial,
     ) -> Result<Self> {
-        let state = state_of(blank, from)?;
+        let state = from.state(blank)?;
         let mut rows = Self {
             blank,
             place,
@@ -115,20 +107,4 @@ pub(crate) fn branch_terms(state: &OperatorState, place: &[u32]) -> [Term; 3] {
             },
             place => Term { place, factor },
         })
-}
-
-/// The state of a model before the first sample.
-pub(crate) fn state_of(model: &Model<f64, Vec<f64>>, from: Initial) -> Result<OperatorState> {
-    let memory = vec![Turn::default(); turn_capacity(model.plane().levels())];
-    let mut state = model.state(memory)?;
-    match from {
-        Initial::Off => {}
-        Initial::On => model.reset_on(&mut state)?,
-        Initial::After(inputs) => {
-            for input in inputs {
-                model.step(&mut state, input)?;
-            }
-        }
-    }
-    Ok(state)
 }

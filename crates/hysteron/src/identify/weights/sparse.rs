@@ -7,7 +7,8 @@
 //! the turning points once per branch.
 
 use crate::error::Result;
-use crate::identify::weights::rows::{Initial, Rows, Term, branch_terms, memory_terms};
+use crate::identify::initial::Initial;
+use crate::identify::weights::rows::{Rows, Term, branch_terms, memory_terms};
 use crate::model::{OperatorState, Plane};
 use crate::progress::Progress;
 use hysteron_core::Operator;
@@ -107,7 +108,7 @@ impl SparseForm {
         let model = Model::new(self.plane, operator, weights, table)?;
         let (low, high) = model.output_range();
         let mut output = [0.0; BLOCK];
-        let mut state = super::rows::state_of(&model, from)?;
+        let mut state = from.state(&model)?;
         for (block, input) in input.chunks(BLOCK).enumerate() {
             model.run(&mut state, input, &mut output)?;
             for (n, y) in output[..input.len()].iter().enumerate() {

@@ -6,9 +6,9 @@
 //! taken once for all units together.
 
 use crate::error::Result;
+use crate::identify::initial::Initial;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::regressor::Regressor;
-use crate::identify::weights::rows::Initial;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::units::Units;
 

@@ -1,0 +1,206 @@
+//! What `fit` says of a model, line by line.
+
+use crate::{args, text};
+use hysteron::{Criterion, FirstOrder, FitSummary, Model, Smooth, Step, Validation};
+
+/// All lines.
+pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
+    let negative = model.weights().iter().filter(|mu| **mu < 0.0).count();
+    let mut lines = vec![
+        format!(
+            "{}: {} samples, {} of {} weights not zero{}",
+            args.out.display(),
+            fit.samples,
+            fit.weights_not_zero,
+            model.plane().operators(),
+            match negative {
+                0 => String::new(),
+                count => format!(", {count} below zero (no inverse)"),
+            },
+        ),
+        format!(
+            "RMSE {} ({:.2} % of the range), largest error {}",
+            text::with_unit(fit.rmse, &model.output),
+            fit.nrmse_percent,
+            text::with_unit(fit.max_abs, &model.output),
+        ),
+    ];
+    lines.extend(
+        fit.validation
+            .as_ref()
+            .map(|found| choice_line(model, fit, found)),
+    );
+    lines.extend(outliers_line(fit, model));
+    lines.extend(model.thermal.as_ref().map(thermal_line));
+    lines.extend(load_line(model));
+    lines.extend(after_line(model, args));
+    lines.extend(curve_line(model, args));
+    lines.extend(start_line(fit));
+    lines.extend(prior_line(fit));
+    lines.extend(text::confidence(fit, model));
+    lines.join("\n")
+}
+
+/// What was chosen, why, and what it was better than.
+fn choice_line(model: &Model, fit: &FitSummary, found: &Validation) -> String {
+    let Smooth { along, across } = fit.smooth;
+    let smooth = match fit.smooth.is_none() {
+        true => "no smoothness".to_owned(),
+        false => format!("smoothness {along:e} along, {across:e} across"),
+    };
+    let spacing = match model.spacing().is_empty() {
+        true => "",
+        false => " close together where the output moves",
+    };
+    let by = match found.criterion {
+        Criterion::LeftOut => "the error on branches left out",
+        Criterion::Evidence => "the evidence, as there are few branches",
+    };
+    let parts = if found.whole_branches {
+        ""
+    } else {
+        "parts of "
+    };
+    let plain = found.scores.iter().filter(|score| score.smooth.is_none());
+    let plain = plain.min_by(|a, b| a.rmse.total_cmp(&b.rmse));
+    let better = match (found.criterion, plain) {
+        (Criterion::LeftOut, Some(plain)) if !fit.smooth.is_none() => format!(
+            " ({:.2} % with {} levels without smoothness)",
+            found.nrmse_percent * plain.rmse / found.rmse.max(f64::MIN_POSITIVE),
+            plain.levels,
+        ),
+        _ => String::new(),
+    };
+    format!(
+        "{} levels{spacing}, {smooth}, chosen by {by}: {:.2} % of the range on {parts}branches \
+         left out{better}",
+        model.plane().levels(),
+        found.nrmse_percent,
+    )
+}
+
+/// Which readings had no weight: the first few by recording and row, counted from 1.
+fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
+    const NAMED: usize = 5;
+    let count = fit.outliers.len();
+    let named = fit.outliers.iter().take(NAMED).map(|outlier| {
+        let recording = match fit.other_files.is_empty() {
+            true => String::new(),
+            false => format!("recording {}, ", outlier.recording + 1),
+        };
+        let by = text::with_unit(outlier.by, &model.output);
+        format!("{recording}sample {} by {by}", outlier.sample + 1)
+    });
+    let named = named.collect::<Vec<_>>().join("; ");
+    let more = if count > NAMED { "; …" } else { "" };
+    (count > 0)
+        .then(|| format!("{count} outliers without weight, and not in these errors: {named}{more}"))
+}
+
+/// What the load does.
+fn load_line(model: &Model) -> Option<String> {
+    let load = model.load.as_ref()?;
+    let curves = load.curves.as_ref()?;
+    let unit = |quantity: &hysteron::Quantity| {
+        let name = || quantity.name.clone();
+        quantity.unit.clone().unwrap_or_else(name)
+    };
+    let (input, weight) = (unit(&model.input), unit(&load.quantity));
+    let [low, high] = [load.range().0, load.range().1].map(text::number);
+    // The field states the slope of the phase diagram: load per temperature.
+    let slope = match curves.slope() {
+        0.0 => "does not shift the axis".into(),
+        slope => format!(
+            "shifts the axis by {} {input}/{weight} ({} {weight}/{input})",
+            text::number(slope),
+            text::number(1.0 / slope),
+        ),
+    };
+    let scaled = if curves.scales.is_empty() {
+        ""
+    } else {
+        ", scales it"
+    };
+    let weights = match (curves.gains.is_empty(), load.weights_order()) {
+        (false, _) => "changes stroke and offset".into(),
+        (true, order) => format!("changes the weights with order {order}"),
+    };
+    let name = &load.quantity.name;
+    Some(format!(
+        "{name} from {low} to {high}: it {slope}{scaled}, and {weights}"
+    ))
+}
+
+/// The output curve; said where it was asked for.
+fn curve_line(model: &Model, args: &args::Fit) -> Option<String> {
+    let constants = model.constants();
+    match constants.get("curve_sums").len() {
+        0 if args.how.curve == Step::Off => None,
+        0 => Some("no output curve: it does not predict parts of the recording left out".into()),
+        knots => Some(format!("output curve of {} pieces", knots - 1)),
+    }
+}
+
+/// What happens after the operators; said where it was asked for.
+fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
+    let (creep, lag) = (model.creep(), model.lag());
+    let asked = args.how.creep != Step::Off || args.how.lag != Step::Off;
+    let mut said = Vec::new();
+    for term in &creep {
+        said.push(format!(
+            "creep of {:.2} % with {} s",
+            100.0 * term.coefficient,
+            text::number(term.tau)
+        ));
+    }
+    if lag > 0.0 {
+        said.push(format!("lag of {} s", text::number(lag)));
+    }
+    match (said.is_empty(), asked) {
+        (_, false) => None,
+        (true, true) => {
+            Some("no creep and no lag: they do not predict parts of the recording left out".into())
+        }
+        (false, true) => Some(said.join(", ")),
+    }
+}
+
+fn prior_line(fit: &FitSummary) -> Option<String> {
+    let models = fit.other.get("prior")?.get("models")?;
+    Some(format!(
+        "what the recording does not say is taken from {models} other actuators"
+    ))
+}
+
+/// The start that was found; what the weights alone would fit, where that says more.
+fn start_line(fit: &FitSummary) -> Option<String> {
+    if let Some(rest) = fit.other.get("rest") {
+        let [first, second] = [0, 1].map(|n| rest.get(n).and_then(|x| x.as_f64()));
+        let (first, second) = (first.map(text::number)?, second.map(text::number)?);
+        let at = match first == second {
+            true => first,
+            false => format!("{first}, then {second}"),
+        };
+        return Some(format!(
+            "start: all off, then at rest at an input of {at}, then the first input; kept in the model"
+        ));
+    }
+    let found = fit.other.get("start_found")?;
+    let free = found.get("free_nrmse_percent")?.as_f64()?;
+    Some(format!(
+        "start found from the first {} samples and kept in the model: all errors are from it; with \
+         every operator free at the start, which no input may lead to, {free:.2} % of the range",
+        found.get("samples")?
+    ))
+}
+
+fn thermal_line(body: &FirstOrder) -> String {
+    let [heating, cooling] = [body.tau_heating, body.tau_cooling].map(text::number);
+    match body.tau_heating == body.tau_cooling {
+        true => format!(
+            "thermal body: time constant {heating} s; heating and cooling are not told apart, \
+             which takes drives of different shape, such as a ramp and a step"
+        ),
+        false => format!("thermal body: time constants {heating} s heating, {cooling} s cooling"),
+    }
+}
