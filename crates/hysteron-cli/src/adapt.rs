@@ -223,7 +223,7 @@ fn to_text(
             counts.rejected
         ),
         EstimatorOptions::Fixed => "nothing learns".into(),
-        EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => format!(
+        EstimatorOptions::Auto(_) | EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => format!(
             "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
              readings rejected, {} times rolled back",
             counts.learned, counts.waiting, counts.at_rest, counts.rejected, counts.rolled_back

@@ -47,8 +47,8 @@ mod series;
 
 pub use adapt::{
     ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Adapted, Adaptive,
-    AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions, Learner, OutcomeCounts, Refit,
-    ShiftFound, Stuck, Window, adapt,
+    AdaptiveLoad, AutoOptions, Compared, Drift, DriftBasis, EstimatorOptions, Learner,
+    OutcomeCounts, Refit, ShiftFound, Stuck, Window, adapt,
 };
 pub use batch::BatchModel;
 #[cfg(feature = "data")]

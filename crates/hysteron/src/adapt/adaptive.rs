@@ -1,15 +1,14 @@
 //! A model that learns while it runs, sample by sample.
 
-use super::refit::{Refit, Refitter};
+use super::basis::DriftBasis;
+use super::learns::{Core, Learns};
+use super::options::AutoOptions;
+use super::refit::Refit;
 use crate::error::{Error, Result};
-use crate::model::{Model, OperatorState, Operators, Sample, Sign, State, Wanted};
+use crate::model::{Model, Operators, Sample, Sign, State, Wanted};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
-use hysteron_core::{
-    Adaptation, Channel, Estimator, Learning, Method, Outcome, estimator_len,
-    estimator_len_of_basis, table_len,
-};
-use hysteron_core::{Solution, StageState, Stages};
+use hysteron_core::{Adaptation, Channel, Learning, Solution, StageState, Stages};
 
 /// A [`Model`] whose weights and offset follow the plant, with its state.
 ///
@@ -39,7 +38,7 @@ use hysteron_core::{Solution, StageState, Stages};
 #[derive(Debug, Clone)]
 pub struct Adaptive {
     offline: Model,
-    core: hysteron_core::Model<f64, Vec<f64>>,
+    core: Core,
     /// State at the measured input.
     state: State,
     /// State of the inverse, at the inputs that it asked for.
@@ -52,29 +51,13 @@ pub struct Adaptive {
     learner: Learns,
 }
 
-/// What finds the weights.
-#[derive(Debug, Clone)]
-enum Learns {
-    /// Nothing.
-    Fixed,
-    /// From sample to sample.
-    Estimator {
-        estimator: Box<Estimator<f64, Vec<f64>>>,
-        /// The basis that the parameters are coefficients of; empty if the parameters are the
-        /// weights.
-        basis: Vec<Vec<f64>>,
-    },
-    /// By refits over a window.
-    Refitter(Box<Refitter>),
-}
-
 impl Adaptive {
     /// A model that does not change, for a place where others learn.
     ///
     /// # Errors
     /// [`Error::Fit`] for a model that depends on a load.
     pub fn fixed(model: &Model) -> Result<Self> {
-        Self::over(model, operators(model)?.core.clone(), Learns::Fixed)
+        Self::over(model, Learns::nothing(model)?)
     }
 
     /// Adapts all weights of `model` and its offset. It starts with all operators off.
@@ -84,13 +67,7 @@ impl Adaptive {
     /// that depends on a load, and for one with so many levels that the method needs more than
     /// 4 GiB.
     pub fn new(model: &Model, options: Adaptation<f64>) -> Result<Self> {
-        let mut core = renewable(model, options.method)?;
-        let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
-        let offset = model.sign().factor() * model.offset();
-        let estimator = Estimator::new(options, &mut core, model.weights(), offset, memory)?;
-        let estimator = Box::new(estimator);
-        let basis = Vec::new();
-        Self::over(model, core, Learns::Estimator { estimator, basis })
+        Self::over(model, Learns::weights_of(model, options)?)
     }
 
     /// Fits all weights of `model` and its offset again and again to the last samples. It starts
@@ -118,15 +95,7 @@ impl Adaptive {
     /// # Errors
     /// As [`Adaptive::new`].
     pub fn refitting(model: &Model, options: Refit) -> Result<Self> {
-        let plane = *operators(model)?.plane();
-        check_memory(MATRICES * plane.operators().pow(2))?;
-        let weights = model.weights();
-        let table = vec![0.0; table_len(plane.levels())];
-        let core = hysteron_core::Model::new(plane, model.operator(), weights, table)?;
-        // Its inverse exists only with weights of zero or above.
-        core.inverse()?;
-        let refitter = Refitter::new(&model.within(), options)?;
-        Self::over(model, core, Learns::Refitter(Box::new(refitter)))
+        Self::over(model, Learns::refits(model, options)?)
     }
 
     /// Adapts the coefficients of `basis` (each member `N` weights) and the offset.
@@ -141,26 +110,35 @@ impl Adaptive {
         coefficients: &[f64],
         options: Adaptation<f64>,
     ) -> Result<Self> {
-        let mut core = renewable(model, options.method)?;
-        let levels = model.plane().levels();
-        let memory = reserved(estimator_len_of_basis(
-            levels,
-            options.method,
-            coefficients.len(),
-        ))?;
-        let offset = model.sign().factor() * model.offset();
-        let all = basis.concat();
-        let estimator =
-            Estimator::of_basis(options, &mut core, &all, coefficients, offset, memory)?;
-        let estimator = Box::new(estimator);
-        Self::over(model, core, Learns::Estimator { estimator, basis })
+        let learns = Learns::coefficients(model, basis, coefficients, options)?;
+        Self::over(model, learns)
     }
 
-    fn over(
-        model: &Model,
-        core: hysteron_core::Model<f64, Vec<f64>>,
-        learner: Learns,
-    ) -> Result<Self> {
+    /// Several learners of one model side by side: the model as it is, the coefficients of `drift`,
+    /// all weights by increments, by least squares and by refits, and the trend of the refits.
+    /// Their mean is the model, each weighted by how well it has predicted lately; see
+    /// [`Learner::Auto`](crate::Learner::Auto).
+    ///
+    /// # Errors
+    /// As [`Adaptive::new`].
+    pub fn mixing(drift: DriftBasis, options: AutoOptions) -> Result<Self> {
+        let DriftBasis {
+            model,
+            basis,
+            coefficients,
+        } = drift;
+        let mut learners = vec![
+            Learns::coefficients(&model, basis, &coefficients, options.drift)?,
+            Learns::weights_of(&model, options.increments)?,
+        ];
+        if let Some((squares, refit)) = options.squares {
+            learners.push(Learns::weights_of(&model, squares)?);
+            learners.push(Learns::refits(&model, refit)?);
+        }
+        Self::over(&model, Learns::mixture(&model, learners)?)
+    }
+
+    fn over(model: &Model, (core, learner): (Core, Learns)) -> Result<Self> {
         let mut state = model.off();
         core.rebase(&mut state.operators)?;
         Ok(Self {
@@ -218,11 +196,22 @@ impl Adaptive {
             let what = "time stands still, which a model with a lag cannot have while it learns";
             return Err(Error::Thermal(what.into()));
         }
+        let factor = self.sign().factor();
+        let model = factor * (self.core.output(&there.operators) + self.level());
+        let ahead = self.stages().offset + factor * self.core.output(&there.operators);
         let learning = self.learn(there.operators.input(), seen)?;
+        // A mixture expects something else of this sample than its model says.
+        let output = match learning.output - model {
+            0.0 => expected.output,
+            more => {
+                let past = Some(self.state.stages).filter(StageState::is_started);
+                self.stages().after(past, dt, ahead + more).0
+            }
+        };
         (self.state.stages, self.measured) = (there.stages, Some(after));
         Ok(Learning {
-            output: expected.output,
-            error: measured - expected.output,
+            output,
+            error: measured - output,
             ..learning
         })
     }
@@ -232,16 +221,7 @@ impl Adaptive {
         let factor = self.sign().factor();
         let raw = factor * measured;
         let state = &mut self.state.operators;
-        let learning = match &mut self.learner {
-            Learns::Fixed => {
-                let offset = factor * self.offline.offset();
-                fixed(&self.core, state, input, (raw, offset))?
-            }
-            Learns::Estimator { estimator, .. } => {
-                estimator.step(&mut self.core, state, input, raw)?
-            }
-            Learns::Refitter(refitter) => refitter.step(&mut self.core, state, input, raw)?,
-        };
+        let learning = self.learner.step(&mut self.core, state, input, raw)?;
         self.follow();
         Ok(Learning {
             output: factor * learning.output,
@@ -330,9 +310,7 @@ impl Adaptive {
                 output
             }
         };
-        if let Learns::Refitter(refitter) = &mut self.learner {
-            refitter.follow(&self.state.operators);
-        }
+        self.learner.follow(&self.state.operators)?;
         Ok(output)
     }
 
@@ -405,22 +383,7 @@ impl Adaptive {
     /// The current weights, row by row.
     #[must_use]
     pub fn weights(&self) -> Vec<f64> {
-        let (estimator, basis) = match &self.learner {
-            Learns::Estimator { estimator, basis } => (estimator, basis),
-            Learns::Refitter(refitter) => return refitter.weights(),
-            Learns::Fixed => return self.offline.weights().to_vec(),
-        };
-        let parameters = estimator.parameters();
-        if basis.is_empty() {
-            return parameters.to_vec();
-        }
-        let mut weights = vec![0.0; self.offline.weights().len()];
-        for (coefficient, member) in parameters.iter().zip(basis) {
-            for (weight, member) in weights.iter_mut().zip(member) {
-                *weight += coefficient * member;
-            }
-        }
-        weights
+        self.learner.weights()
     }
 
     /// The current output with every operator off.
@@ -436,11 +399,7 @@ impl Adaptive {
 
     /// The offset without the sign.
     fn level(&self) -> f64 {
-        match &self.learner {
-            Learns::Estimator { estimator, .. } => estimator.offset(),
-            Learns::Refitter(refitter) => refitter.offset(),
-            Learns::Fixed => self.sign().factor() * self.offline.offset(),
-        }
+        self.learner.level()
     }
 
     /// The current model, with the stages and the names of the off-line model.
@@ -478,10 +437,8 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn reset(&mut self) -> Result<()> {
-        self.begin();
         self.core.reset_off(&mut self.state.operators)?;
-        self.align();
-        Ok(())
+        self.begin()
     }
 
     /// Turns every operator on, as at the top of the plane, also in the state of the inverse. The
@@ -490,39 +447,25 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn saturate(&mut self) -> Result<()> {
-        self.begin();
         self.core.reset_on(&mut self.state.operators)?;
-        self.align();
-        Ok(())
+        self.begin()
     }
 
     /// While frozen, [`Adaptive::step`] returns the expected output but does not learn.
     pub fn freeze(&mut self, frozen: bool) {
-        match &mut self.learner {
-            Learns::Estimator { estimator, .. } => estimator.freeze(frozen),
-            Learns::Refitter(refitter) => refitter.freeze(frozen),
-            Learns::Fixed => {}
-        }
+        self.learner.freeze(frozen);
     }
 
     /// The channel that stands still while the other one moves: nothing is learned then, and what
     /// was learned since it began to is undone.
     #[must_use]
     pub fn stuck(&self) -> Option<Channel> {
-        match &self.learner {
-            Learns::Estimator { estimator, .. } => estimator.stuck(),
-            Learns::Refitter(refitter) => refitter.stuck(),
-            Learns::Fixed => None,
-        }
+        self.learner.stuck()
     }
 
     /// Stores the current weights and offset as the last good ones.
     pub fn keep(&mut self) {
-        match &mut self.learner {
-            Learns::Estimator { estimator, .. } => estimator.keep(),
-            Learns::Refitter(refitter) => refitter.keep(),
-            Learns::Fixed => {}
-        }
+        self.learner.keep();
     }
 
     /// Restores the last good weights and offset: those stored last, or those that have passed a
@@ -531,11 +474,7 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn roll_back(&mut self) -> Result<()> {
-        match &mut self.learner {
-            Learns::Estimator { estimator, .. } => estimator.roll_back(&mut self.core),
-            Learns::Refitter(refitter) => refitter.roll_back(&mut self.core)?,
-            Learns::Fixed => {}
-        }
+        self.learner.roll_back(&mut self.core)?;
         self.follow();
         Ok(self.core.rebase(&mut self.state.operators)?)
     }
@@ -547,8 +486,7 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn refit(&mut self) -> Result<()> {
-        if let Learns::Refitter(refitter) = &mut self.learner {
-            refitter.refit(&mut self.core)?;
+        if self.learner.refit(&mut self.core)? {
             self.core.rebase(&mut self.state.operators)?;
             self.follow();
         }
@@ -556,87 +494,14 @@ impl Adaptive {
     }
 
     /// Others set the state of the operators; the stages are at rest.
-    fn begin(&mut self) {
+    fn begin(&mut self) -> Result<()> {
         (self.state.stages, self.measured) = (StageState::default(), None);
-        match &mut self.learner {
-            Learns::Estimator { estimator, .. } => estimator.realign(),
-            Learns::Refitter(refitter) => refitter.realign(),
-            Learns::Fixed => {}
-        }
+        self.learner.realign(&self.state.operators)?;
+        self.align();
+        Ok(())
     }
 
     fn sign(&self) -> Sign {
         self.offline.sign()
     }
-}
-
-/// A step of a model that does not change. `measured` and `offset` are without the sign.
-fn fixed(
-    core: &hysteron_core::Model<f64, Vec<f64>>,
-    state: &mut OperatorState,
-    input: f64,
-    (measured, offset): (f64, f64),
-) -> Result<Learning<f64>> {
-    if !measured.is_finite() {
-        return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
-    }
-    let step = core.step(state, input)?;
-    let output = step.output + offset;
-    Ok(Learning {
-        output,
-        error: measured - output,
-        outcome: Outcome::Frozen,
-        clipped: step.clipped,
-    })
-}
-
-/// The operators of a model at one load.
-fn operators(model: &Model) -> Result<&Operators> {
-    match &model.load {
-        None => Ok(model.operators()),
-        Some(load) => Err(load.one_is_needed()),
-    }
-}
-
-/// Largest memory of an estimator, in bytes.
-const MOST_BYTES: u128 = 4 << 30;
-
-/// Matrices that a refit has at one time: the sums, those of the operators, the one to solve and its
-/// factor.
-const MATRICES: usize = 4;
-
-/// The memory of an estimator.
-fn reserved(numbers: usize) -> Result<Vec<f64>> {
-    check_memory(numbers)?;
-    Ok(vec![0.0; numbers])
-}
-
-fn check_memory(numbers: usize) -> Result<()> {
-    let bytes = 8 * numbers as u128;
-    if bytes > MOST_BYTES {
-        return Err(Error::Fit(format!(
-            "an estimator with this method and so many levels takes {:.1} GiB, more than the {} \
-             GiB allowed: take another method, or a model with fewer levels",
-            bytes as f64 / f64::from(1 << 30),
-            MOST_BYTES >> 30
-        )));
-    }
-    Ok(())
-}
-
-/// A core model with the memory that the method needs.
-fn renewable(model: &Model, method: Method<f64>) -> Result<hysteron_core::Model<f64, Vec<f64>>> {
-    let model = operators(model)?;
-    let tables = match method {
-        Method::Increments { .. } => 2,
-        _ => 1,
-    };
-    let (plane, operator) = (*model.plane(), model.operator());
-    let table = vec![0.0; tables * table_len(plane.levels())];
-    Ok(hysteron_core::Model::new(
-        plane,
-        operator,
-        model.weights(),
-        table,
-    )?)
 }

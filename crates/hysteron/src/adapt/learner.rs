@@ -4,7 +4,7 @@
 use crate::adapt::window::Window;
 use crate::error::{Error, Result};
 use crate::model::Start;
-use Learner::{Drift, Increments, LeastSquares, Load, Refit};
+use Learner::{Auto, Drift, Increments, LeastSquares, Load, Refit};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -13,11 +13,13 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", try_from = "String")]
 pub enum Learner {
+    /// Fixed, refit, drift, least squares and increments side by side. Their mean is the model,
+    /// each weighted by how well it has predicted lately (Herbster and Warmuth 1998).
+    #[default]
+    Auto,
     /// Nothing: the model stays as it is.
     Fixed,
-    /// All weights by least squares over the last cycle of the input, again and again. With the
-    /// defaults it has the smallest errors on measured recordings.
-    #[default]
+    /// All weights by least squares over the last cycle of the input, again and again.
     Refit,
     /// The coefficients of [`crate::DriftBasis`] by recursive least squares.
     Drift,
@@ -31,7 +33,8 @@ pub enum Learner {
 
 impl Learner {
     /// All learners.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
+        Self::Auto,
         Self::Fixed,
         Self::Refit,
         Self::Drift,
@@ -44,6 +47,7 @@ impl Learner {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::Fixed => "fixed",
             Self::Refit => "refit",
             Self::Drift => "drift",
@@ -57,6 +61,10 @@ impl Learner {
     #[must_use]
     pub fn purpose(self) -> &'static str {
         match self {
+            Self::Auto => {
+                "All of the others but `load` side by side, weighted by how well each has \
+                 predicted lately"
+            }
             Self::Fixed => "Nothing learns: the model stays as it is",
             Self::Refit => {
                 "All weights, by least squares over the last cycle of the input, again and again"
@@ -95,7 +103,7 @@ impl FromStr for Learner {
             let names = Self::ALL.map(Self::name).join(", ");
             Error::Fit(match name {
                 "gradient" => "there is no learner `gradient` any more: take `increments`, which \
-                               needs no more knowledge, or `refit`, which errs least"
+                               needs no more knowledge, or `auto`, the default"
                     .into(),
                 _ => format!("there is no learner `{name}`: one of {names} is needed"),
             })
@@ -195,7 +203,7 @@ macro_rules! value {
 
 value!(f64: Number, u32: Count, Window: Window);
 
-const ALL: &[Learner] = &[Refit, Drift, LeastSquares, Increments, Load];
+const ALL: &[Learner] = &[Auto, Refit, Drift, LeastSquares, Increments, Load];
 const ESTIMATORS: &[Learner] = &[Drift, LeastSquares, Increments];
 const SQUARES: &[Learner] = &[Drift, LeastSquares];
 
@@ -219,7 +227,7 @@ macro_rules! options {
         #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
         #[serde(default, deny_unknown_fields)]
         pub struct AdaptOptions {
-            /// Which parameters are adapted, and by which method. Default `refit`.
+            /// Which parameters are adapted, and by which method. Default `auto`.
             #[serde(rename = "method")]
             pub learner: Learner,
             /// State of the operators before the first sample. Unknown: off or on, whichever gives
@@ -280,7 +288,7 @@ macro_rules! options {
 }
 
 options! {
-    load: f64, &[Refit, Drift, Load], "middle of its range", "the model's",
+    load: f64, &[Auto, Refit, Drift, Load], "middle of its range", "the model's",
         "load to start at, for a model that depends on a load";
     window: Window, &[Refit], "`cycles:1`", "`cycles:1` to `cycles:1000`, `samples:2` to `samples:65536`",
         "the samples to fit to, the last cycles of the input or the last samples";

@@ -13,9 +13,12 @@ mod basis;
 mod counts;
 mod drift;
 mod learner;
+mod learns;
 mod load;
+mod mixture;
 mod options;
 mod refit;
+mod shares;
 mod stuck;
 mod sums;
 mod unknown_load;
@@ -27,7 +30,7 @@ pub use counts::OutcomeCounts;
 pub use drift::Drift;
 pub use learner::{ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Learner};
 pub use load::AdaptiveLoad;
-pub use options::EstimatorOptions;
+pub use options::{AutoOptions, EstimatorOptions};
 pub use refit::Refit;
 pub use stuck::Stuck;
 pub use unknown_load::ShiftFound;
@@ -422,6 +425,12 @@ impl EstimatorOptions {
     fn described(&self) -> serde_json::Value {
         match self {
             Self::Fixed => json!({}),
+            Self::Auto(auto) => json!({
+                "drift": described(&auto.drift),
+                "increments": described(&auto.increments),
+                "least-squares": auto.squares.map(|(squares, _)| described(&squares)),
+                "refit": auto.squares.map(|(_, refit)| refit),
+            }),
             Self::Weights(adaptation) => described(adaptation),
             Self::Refit(refit) => json!(refit),
             Self::Shift(options) => json!({

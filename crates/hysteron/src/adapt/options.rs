@@ -36,6 +36,8 @@ const SHARE: f64 = 0.5;
 pub enum EstimatorOptions {
     /// Nothing learns.
     Fixed,
+    /// Those of several learners side by side.
+    Auto(AutoOptions),
     /// Those of an estimator of weights or coefficients, from sample to sample.
     Weights(Adaptation<f64>),
     /// Those of a windowed refit.
@@ -43,6 +45,21 @@ pub enum EstimatorOptions {
     /// Those of the estimator of the shift.
     Shift(ShiftOptions<f64>),
 }
+
+/// The options of the learners that [`Learner::Auto`] mixes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AutoOptions {
+    /// Of a few coefficients.
+    pub drift: Adaptation<f64>,
+    /// Of all weights, from increments.
+    pub increments: Adaptation<f64>,
+    /// Of all weights, by recursive least squares and by refits. `None` for a model with so many
+    /// operators that a step of these takes longer than a loop has.
+    pub squares: Option<(Adaptation<f64>, Refit)>,
+}
+
+/// Most operators of a model that [`Learner::Auto`] takes a matrix for: 40 levels have 820.
+const SQUARED: usize = 1000;
 
 impl AdaptOptions {
     /// The options of the learner for `model` on `recording`.
@@ -123,6 +140,9 @@ impl AdaptOptions {
                 return Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit);
             }
             EstimatorOptions::Fixed => return Adaptive::fixed(model),
+            EstimatorOptions::Auto(options) => {
+                return Adaptive::mixing(DriftBasis::of(model, self.load)?, options);
+            }
             EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => {}
         }
         let adaptation = options.estimator()?;
@@ -140,20 +160,32 @@ impl AdaptOptions {
         }
         Ok(match self.learner {
             Learner::Fixed => EstimatorOptions::Fixed,
-            Learner::Refit => {
-                let usual = Refit::default();
-                EstimatorOptions::Refit(Refit {
-                    window: self.window.unwrap_or(usual.window),
-                    every: self.every,
-                    ridge: self.ridge.unwrap_or(usual.ridge),
-                    movement: self.movement.unwrap_or(usual.movement),
-                    gate: self.gate.unwrap_or(usual.gate),
-                    burst: self.burst.unwrap_or(usual.burst),
+            Learner::Auto => {
+                let of = |learner| Self { learner, ..*self }.weights(model, rough, range);
+                EstimatorOptions::Auto(AutoOptions {
+                    drift: of(Learner::Drift),
+                    increments: of(Learner::Increments),
+                    squares: (model.plane().operators() <= SQUARED)
+                        .then(|| (of(Learner::LeastSquares), self.windowed())),
                 })
             }
+            Learner::Refit => EstimatorOptions::Refit(self.windowed()),
             Learner::Load => EstimatorOptions::Shift(self.shift(model, rough, range)),
             _ => EstimatorOptions::Weights(self.weights(model, rough, range)),
         })
+    }
+
+    /// The options of a refit.
+    fn windowed(&self) -> Refit {
+        let usual = Refit::default();
+        Refit {
+            window: self.window.unwrap_or(usual.window),
+            every: self.every,
+            ridge: self.ridge.unwrap_or(usual.ridge),
+            movement: self.movement.unwrap_or(usual.movement),
+            gate: self.gate.unwrap_or(usual.gate),
+            burst: self.burst.unwrap_or(usual.burst),
+        }
     }
 
     /// The options of the estimator of the shift.
@@ -224,7 +256,7 @@ impl EstimatorOptions {
     fn estimator(self) -> Result<Adaptation<f64>> {
         match self {
             Self::Weights(adaptation) => Ok(adaptation),
-            Self::Fixed | Self::Refit(_) | Self::Shift(_) => Err(Error::Fit(
+            Self::Fixed | Self::Auto(_) | Self::Refit(_) | Self::Shift(_) => Err(Error::Fit(
                 "this needs a learner that estimates weights: `drift`, `least-squares` or \
                  `increments`"
                     .into(),
@@ -245,6 +277,7 @@ impl EstimatorOptions {
     pub(super) fn gate(self) -> (f64, u32) {
         match self {
             Self::Fixed => (0.0, 0),
+            Self::Auto(AutoOptions { drift, .. }) => (drift.gate, drift.burst),
             Self::Weights(Adaptation { gate, burst, .. }) => (gate, burst),
             Self::Refit(Refit { gate, burst, .. }) => (gate, burst),
             Self::Shift(ShiftOptions { gate, burst, .. }) => (gate, burst),

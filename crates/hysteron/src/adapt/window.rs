@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 /// The input turns where it comes back by more than this share of the plane.
-const TURN: f64 = 0.1;
+pub(super) const TURN: f64 = 0.1;
 
 /// A window of cycles is at least this share as wide as the widest of so many times as many cycles.
 /// So a small loop does not make a refit forget the large one before it.

@@ -7,7 +7,8 @@ use hysteron::{
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-const LEARNERS: [Learner; 4] = [
+const LEARNERS: [Learner; 5] = [
+    Learner::Auto,
     Learner::Refit,
     Learner::Drift,
     Learner::LeastSquares,
@@ -94,11 +95,11 @@ fn a_model_that_learns_nothing_is_the_model_bit_for_bit() {
         let model = model(&mut rng);
         let mut state = model.off();
         let mut fixed = by(Learner::Fixed).adaptive(&model).unwrap();
-        let mut frozen = by(LEARNERS[seed as usize % 4]).adaptive(&model).unwrap();
+        let mut frozen = by(LEARNERS[seed as usize % 5]).adaptive(&model).unwrap();
         frozen.freeze(true);
-        // A refit has weights of other states, and `drift` a sum of sets: both round.
+        // A refit has weights of other states, `drift` a sum of sets, `auto` a mean: they round.
         let exact = matches!(
-            LEARNERS[seed as usize % 4],
+            LEARNERS[seed as usize % 5],
             Learner::LeastSquares | Learner::Increments
         );
         for sample in walk(&mut rng, &model, 200) {
@@ -125,7 +126,7 @@ fn what_learns_from_the_model_itself_stays_at_the_model() {
     for seed in 0..200 {
         let mut rng = ChaCha8Rng::seed_from_u64(1000 + seed);
         let model = model(&mut rng);
-        let learner = LEARNERS[seed as usize % 4];
+        let learner = LEARNERS[seed as usize % 5];
         let mut state = model.off();
         let mut adaptive = by(learner).adaptive(&model).unwrap();
         let (off, on) = model.output_range();

@@ -24,6 +24,7 @@ mod hold_out;
 mod identification;
 mod inverse_series;
 mod kept_start;
+mod mixture;
 mod parquet_copy;
 mod people;
 mod pid;

@@ -1,0 +1,431 @@
+//! A mixture of learners: several learn side by side, and the model is their mean.
+//!
+//! All of them are over one plane, and their weights are zero or above. So the mean of their
+//! weights, each by its share, is again such a model: it has one inverse, and costs one.
+//!
+//! Shares come from errors at two horizons ([`Shares`]). The output *expected* at the next sample is
+//! the mean by the errors of such expectations. The *model*, which an inverse uses and a file
+//! keeps, is for the stroke to come: its shares come from the errors of weights as they were at the
+//! last turning point of the input.
+
+use super::learns::{Core, Learns, writable};
+use super::shares::Shares;
+use super::window::TURN;
+use crate::error::Result;
+use crate::model::{Model, OperatorState};
+use crate::series::Turning;
+use hysteron_core::{Channel, Learning, Outcome, Reading, Watch, Watched};
+
+/// The loss of a usual error, one sample ahead. Independent errors of a normal distribution would
+/// have ½; those of neighbouring samples are alike.
+const NEAR: f64 = 0.2;
+/// As [`NEAR`], a stroke ahead: the errors of a stroke are more alike.
+const FAR: f64 = 0.1;
+
+/// How far a model that settles goes on after the last cycle, in differences of the last two.
+const TREND: f64 = 0.5;
+
+/// A learner that shares no state with the others.
+#[derive(Debug, Clone)]
+struct Expert {
+    core: Core,
+    state: OperatorState,
+    learns: Learns,
+    /// What it had learned at the last turning points of the input, the last one first.
+    kept: [Kept; 2],
+}
+
+/// Weights that nothing changes, and the offset.
+#[derive(Debug, Clone)]
+struct Kept {
+    core: Core,
+    weights: Vec<f64>,
+    offset: f64,
+}
+
+impl Kept {
+    /// Takes what `learns` has learned.
+    fn take(&mut self, learns: &Learns) -> Result<()> {
+        (self.weights, self.offset) = (learns.weights(), learns.level());
+        Ok(self.core.set_weights(&self.weights)?)
+    }
+
+    /// The output at a state, which may be one of other weights.
+    fn output(&self, state: &mut OperatorState) -> Result<f64> {
+        self.core.rebase(state)?;
+        Ok(self.core.output(state) + self.offset)
+    }
+}
+
+/// The shares of both horizons.
+#[derive(Debug, Clone)]
+struct Both {
+    near: Shares,
+    far: Shares,
+}
+
+/// Learners side by side, the one that learns nothing first.
+#[derive(Debug, Clone)]
+pub(super) struct Mixture {
+    experts: Vec<Expert>,
+    /// The places of the refit, and of its trend.
+    trend: Option<(usize, usize)>,
+    shares: Both,
+    /// Finds the pieces of the run in which the output moved.
+    watch: Watch<f64>,
+    /// The shares before the last such piece, and before the present one. What a channel that
+    /// stands still has said is undone by them.
+    trusted: Both,
+    pending: Both,
+    good: Both,
+    /// The mean of the experts, by the far shares.
+    weights: Vec<f64>,
+    offset: f64,
+    turning: Turning,
+    tolerance: f64,
+    /// A state for weights of the past.
+    there: OperatorState,
+    stuck: Option<Channel>,
+    frozen: bool,
+}
+
+impl Mixture {
+    /// A mixture of `learners` of `model`, and of the model as it is. A refit has its trend beside
+    /// it.
+    pub(super) fn new(model: &Model, mut learners: Vec<(Core, Learns)>) -> Result<(Core, Self)> {
+        let (core, state) = (writable(model)?, model.within().plain()?.start());
+        learners.insert(0, Learns::nothing(model)?);
+        let refit = learners
+            .iter()
+            .position(|(_, learns)| matches!(learns, Learns::Refitter(_)));
+        if refit.is_some() {
+            let (_, nothing) = Learns::nothing(model)?;
+            learners.push((core.clone(), nothing));
+        }
+        let trend = refit.map(|refit| (refit, learners.len() - 1));
+        let experts = learners.into_iter().map(|(own, learns)| {
+            let mut state = state.clone();
+            own.rebase(&mut state)?;
+            let (weights, offset) = (learns.weights(), learns.level());
+            let kept = Kept {
+                core: core.clone(),
+                weights,
+                offset,
+            };
+            Ok(Expert {
+                core: own,
+                state,
+                learns,
+                kept: [kept.clone(), kept],
+            })
+        });
+        let experts: Vec<Expert> = experts.collect::<Result<_>>()?;
+        let (low, high) = core.output_range();
+        let shares = |rate| Shares::new(experts.len(), high - low, rate);
+        let shares = Both {
+            near: shares(NEAR),
+            far: shares(FAR),
+        };
+        let tolerance = TURN * model.plane().levels() as f64;
+        let mixture = Self {
+            watch: Watch::new(high - low, model.plane().levels() as f64),
+            trusted: shares.clone(),
+            pending: shares.clone(),
+            good: shares.clone(),
+            shares,
+            trend,
+            weights: model.weights().to_vec(),
+            offset: experts[0].learns.level(),
+            turning: Turning::new(tolerance),
+            tolerance,
+            there: state,
+            stuck: None,
+            frozen: false,
+            experts,
+        };
+        Ok((core, mixture))
+    }
+
+    pub(super) fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    pub(super) fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    pub(super) fn stuck(&self) -> Option<Channel> {
+        self.stuck
+    }
+
+    /// As [`hysteron_core::Estimator::step`].
+    pub(super) fn step(
+        &mut self,
+        core: &mut Core,
+        state: &mut OperatorState,
+        input: f64,
+        measured: f64,
+    ) -> Result<Learning<f64>> {
+        if !measured.is_finite() {
+            return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
+        }
+        let step = core.step(state, input)?;
+        let (mut outputs, mut outcomes) = (Vec::new(), Vec::new());
+        for Expert {
+            core,
+            state,
+            learns,
+            ..
+        } in &mut self.experts
+        {
+            let learning = learns.step(core, state, input, measured)?;
+            outputs.push(learning.output);
+            outcomes.push(learning.outcome);
+        }
+        let output = self.shares.near.mean(&outputs);
+        let outcome = joint(&outcomes);
+        let before = self.stuck;
+        self.stuck = match outcome {
+            Outcome::OutputStuck => Some(Channel::Output),
+            Outcome::InputStuck => Some(Channel::Input),
+            _ => None,
+        };
+        let believed = matches!(
+            outcome,
+            Outcome::Learned | Outcome::Waiting | Outcome::RolledBack
+        );
+        if !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
+            let (position, expected) = (state.position(), outputs[0]);
+            let reading = Reading {
+                position,
+                expected,
+                measured,
+            };
+            if let Watched::Piece { alive } = self.watch.look(reading, believed) {
+                let before = std::mem::replace(&mut self.pending, self.shares.clone());
+                if alive {
+                    self.trusted = before;
+                }
+            }
+        }
+        if self.stuck.is_some() && before.is_none() {
+            self.undo()?;
+        } else if believed {
+            self.judge(state, &outputs, measured)?;
+        }
+        if !self.frozen && self.turning.push(state.position()).is_some() {
+            self.turn()?;
+        }
+        if !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
+            self.mix(core)?;
+            core.rebase(state)?;
+        }
+        Ok(Learning {
+            output,
+            error: measured - output,
+            outcome,
+            clipped: step.clipped,
+        })
+    }
+
+    /// Judges the experts by what they expected now, and by what they had expected of now.
+    fn judge(&mut self, state: &OperatorState, outputs: &[f64], measured: f64) -> Result<()> {
+        let errors: Vec<f64> = outputs.iter().map(|y| measured - y).collect();
+        self.shares.near.judge(&errors);
+        self.there.clone_from(state);
+        let there = &mut self.there;
+        let late = self.experts.iter();
+        let late = late.map(|expert| Ok(measured - expert.kept[0].output(there)?));
+        let late: Vec<f64> = late.collect::<Result<_>>()?;
+        self.shares.far.judge(&late);
+        Ok(())
+    }
+
+    /// The input has turned: what is known now is kept for a judgement in strokes to come.
+    fn turn(&mut self) -> Result<()> {
+        for Expert {
+            core,
+            state,
+            learns,
+            ..
+        } in &mut self.experts
+        {
+            if learns.refit(core)? {
+                core.rebase(state)?;
+            }
+        }
+        self.extrapolate()?;
+        for Expert { learns, kept, .. } in &mut self.experts {
+            kept.swap(0, 1);
+            kept[0].take(learns)?;
+        }
+        Ok(())
+    }
+
+    /// Sets the trend: the refit, and so far beyond it as it has moved over the last cycle.
+    fn extrapolate(&mut self) -> Result<()> {
+        let Some((refit, trend)) = self.trend else {
+            return Ok(());
+        };
+        let Expert {
+            learns,
+            kept: [_, past],
+            ..
+        } = &self.experts[refit];
+        let beyond = |now: f64, past: f64| now + TREND * (now - past);
+        let now = learns.weights();
+        let pairs = now.iter().zip(&past.weights);
+        let weights: Vec<f64> = pairs
+            .map(|(now, past)| beyond(*now, *past).max(0.0))
+            .collect();
+        let offset = beyond(learns.level(), past.offset);
+        let Expert {
+            core,
+            state,
+            learns,
+            ..
+        } = &mut self.experts[trend];
+        core.set_weights(&weights)?;
+        core.rebase(state)?;
+        *learns = Learns::Fixed(weights, offset);
+        Ok(())
+    }
+
+    /// Writes the mean of the experts to `core`.
+    fn mix(&mut self, core: &mut Core) -> Result<()> {
+        self.weights.fill(0.0);
+        self.offset = 0.0;
+        for (share, expert) in self.shares.far.all().iter().zip(&self.experts) {
+            self.offset += share * expert.learns.level();
+            let own = expert.learns.weights();
+            let pairs = self.weights.iter_mut().zip(own);
+            pairs.for_each(|(mean, weight)| *mean += share * weight);
+        }
+        Ok(core.set_weights(&self.weights)?)
+    }
+
+    /// Forgets what a channel that stands still has said; the experts have done so themselves.
+    fn undo(&mut self) -> Result<()> {
+        self.shares = self.trusted.clone();
+        self.begin_anew()
+    }
+
+    /// What the experts know now is all that they are judged by.
+    fn begin_anew(&mut self) -> Result<()> {
+        self.turning = Turning::new(self.tolerance);
+        (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
+        if let Some((refit, _)) = self.trend {
+            let Expert { learns, kept, .. } = &mut self.experts[refit];
+            kept[1].take(learns)?;
+            self.extrapolate()?;
+        }
+        for Expert { learns, kept, .. } in &mut self.experts {
+            for kept in kept {
+                kept.take(learns)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Others moved the state along its branches.
+    pub(super) fn follow(&mut self, state: &OperatorState) -> Result<()> {
+        for Expert {
+            core,
+            state: own,
+            learns,
+            ..
+        } in &mut self.experts
+        {
+            own.clone_from(state);
+            core.rebase(own)?;
+            learns.follow(own)?;
+        }
+        Ok(())
+    }
+
+    /// Others set the state.
+    pub(super) fn realign(&mut self, state: &OperatorState) -> Result<()> {
+        for Expert {
+            core,
+            state: own,
+            learns,
+            ..
+        } in &mut self.experts
+        {
+            own.clone_from(state);
+            core.rebase(own)?;
+            learns.realign(own)?;
+        }
+        self.turning = Turning::new(self.tolerance);
+        self.watch.restart();
+        Ok(())
+    }
+
+    pub(super) fn freeze(&mut self, frozen: bool) {
+        self.frozen = frozen;
+        self.watch.restart();
+        self.experts
+            .iter_mut()
+            .for_each(|expert| expert.learns.freeze(frozen));
+    }
+
+    pub(super) fn keep(&mut self) {
+        self.good = self.shares.clone();
+        (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
+        self.watch.restart();
+        self.experts
+            .iter_mut()
+            .for_each(|expert| expert.learns.keep());
+    }
+
+    pub(super) fn roll_back(&mut self, core: &mut Core) -> Result<()> {
+        self.shares = self.good.clone();
+        for Expert {
+            core,
+            state,
+            learns,
+            ..
+        } in &mut self.experts
+        {
+            learns.roll_back(core)?;
+            core.rebase(state)?;
+        }
+        self.begin_anew()?;
+        self.mix(core)
+    }
+
+    pub(super) fn refit(&mut self, core: &mut Core) -> Result<bool> {
+        let mut changed = false;
+        for Expert {
+            core,
+            state,
+            learns,
+            ..
+        } in &mut self.experts
+        {
+            if learns.refit(core)? {
+                core.rebase(state)?;
+                changed = true;
+            }
+        }
+        if changed {
+            self.mix(core)?;
+        }
+        Ok(changed)
+    }
+}
+
+/// What a mixture did with a sample, by what its experts did.
+fn joint(outcomes: &[Outcome]) -> Outcome {
+    let order = [
+        Outcome::OutputStuck,
+        Outcome::InputStuck,
+        Outcome::Learned,
+        Outcome::RolledBack,
+        Outcome::Waiting,
+        Outcome::Rejected,
+        Outcome::AtRest,
+    ];
+    let found = order.into_iter().find(|outcome| outcomes.contains(outcome));
+    found.unwrap_or(Outcome::Frozen)
+}
