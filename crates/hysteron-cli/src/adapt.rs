@@ -147,6 +147,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "probation": adapted.probation,
         "again": adapted.again,
         "counts": adapted.counts,
+        "shares": adapted.shares.iter().copied().collect::<std::collections::BTreeMap<_, _>>(),
         "drift": adapted.drift,
         "shift": adapted.shift.as_ref().map(|found| json!({
             "shift": found.shift,
@@ -223,17 +224,24 @@ fn to_text(
             counts.rejected
         ),
         EstimatorOptions::Fixed => "nothing learns".into(),
-        EstimatorOptions::Auto(_) | EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => format!(
-            "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
+        EstimatorOptions::Auto(_) | EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => {
+            format!(
+                "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
              readings rejected, {} times rolled back",
-            counts.learned, counts.waiting, counts.at_rest, counts.rejected, counts.rolled_back
-        ),
+                counts.learned, counts.waiting, counts.at_rest, counts.rejected, counts.rolled_back
+            )
+        }
     };
     let target = match refused {
         true => "not written".into(),
         false => args.out.display().to_string(),
     };
     let mut lines = vec![format!("{target}: {learning}"), text::table(&rows)];
+    if !adapted.shares.is_empty() {
+        let share = |(name, share): &(_, f64)| format!("{name} {:.0} %", 100.0 * share);
+        let shares: Vec<String> = adapted.shares.iter().map(share).collect();
+        lines.push(format!("the model is a mean of {}", shares.join(", ")));
+    }
     if let Some(found) = &adapted.shift {
         lines.push(shift(found, model));
     } else {

@@ -15,7 +15,8 @@ const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
 /// Learners of weights.
-const LEARNERS: [(&str, Learner); 4] = [
+const LEARNERS: [(&str, Learner); 5] = [
+    ("auto", Learner::Auto),
     ("refit", Learner::Refit),
     ("increments", Learner::Increments),
     ("least squares", Learner::LeastSquares),
@@ -40,10 +41,10 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     print!("\n{}", include_str!("text/adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!(
-        "| from → to, MPa | fixed | fitted | refit | increments | least squares | drift \
+        "| from → to, MPa | fixed | fitted | auto | refit | increments | least squares | drift \
          | least squares, forgetting 1 |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {
         let loops = Loops::read(folder, material, stresses, output)?;
         for to in 1..stresses.len() {
@@ -53,10 +54,10 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     }
     print!("\n{}", include_str!("text/adaptation-load.md"));
     println!(
-        "| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 | load \
+        "| from → to, MPa | middle | at its load | fitted | auto | refit | drift | drift, forgetting 1 | load \
          | load found |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {
             if to + 1 < loops.stresses.len() {
@@ -356,13 +357,14 @@ impl Loops {
             Err(_) => "outside".into(),
         };
         println!(
-            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} | {} | {:.0} |",
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} | {} | {} | {:.0} |",
             self.material,
             self.stresses[from[0]],
             self.stresses[from[1]],
             self.stresses[to],
             self.judge(&middle, to)?,
             self.judge(&Fit::from(&self.options).run(&self.loops[to])?, to)?,
+            self.adapted(&model, to, &adapting(Learner::Auto))?,
             self.adapted(&model, to, &adapting(Learner::Refit))?,
             self.adapted(&model, to, &adapting(Learner::Drift))?,
             self.adapted(&model, to, &remembering(Learner::Drift))?,

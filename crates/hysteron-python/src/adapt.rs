@@ -73,8 +73,8 @@ impl Adapted {
 /// time : array_like, shape (n,), optional
 ///     As in `Recording`. Needed for a model that depends on time, otherwise only checked for going
 ///     back.
-/// method : {'fixed', 'refit', 'drift', 'least-squares', 'increments', 'load'}
-///     What learns; see `Adaptive`. 'refit' errs least on measured recordings. 'load' follows the
+/// method : {'auto', 'fixed', 'refit', 'drift', 'least-squares', 'increments', 'load'}
+///     What learns; see `Adaptive`. 'load' follows the
 ///     shift of the input axis alone, by a load that nobody measures, and runs any model; then the
 ///     table also has 'shift_model', in the input's unit, and 'load_model', if the model's shift
 ///     tells a load.
@@ -111,8 +111,8 @@ impl Adapted {
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (model, recording, output=None, *, time=None, method="refit", start="off", progress=None, **options),
-    text_signature = "(model, recording, output=None, *, time=None, method='refit', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
+    signature = (model, recording, output=None, *, time=None, method="auto", start="off", progress=None, **options),
+    text_signature = "(model, recording, output=None, *, time=None, method='auto', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
 )]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn adapt<'py>(

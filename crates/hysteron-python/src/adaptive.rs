@@ -28,7 +28,9 @@ use pyo3::types::PyDict;
 /// ----------
 /// model : Model
 ///     The off-line model. It stays as it is.
-/// method : {'fixed', 'refit', 'drift', 'least-squares', 'increments'}
+/// method : {'auto', 'fixed', 'refit', 'drift', 'least-squares', 'increments'}
+///     'auto': all of the others side by side; their mean is the model, each weighted by how well it
+///     has predicted lately (Herbster and Warmuth 1998).
 ///     'refit': all weights, by least squares over the last cycle of the input, again and again.
 ///     'drift': coefficients of a few patterns in which weights change under load and drift, by
 ///     least squares. 'least-squares': all weights, by recursive least squares. 'increments': all
@@ -83,7 +85,7 @@ use pyo3::types::PyDict;
 ///     After this many consecutive readings beyond the gate that agree, the plant has jumped and
 ///     they are learned from. 1 or more, by default 8.
 /// load : float, optional
-///     'refit' and 'drift' with a model that depends on a load: the load at the start. By default the middle
+///     'auto', 'refit' and 'drift' with a model that depends on a load: the load at the start. By default the middle
 ///     of its range.
 ///
 /// Raises
@@ -92,7 +94,7 @@ use pyo3::types::PyDict;
 ///     For an option out of range and for negative weights.
 /// FitError
 ///     For an option that the method does not have, a model that depends on a load (with another
-///     method than 'refit' or 'drift'), and too many levels for the memory of the method.
+///     method than 'auto', 'refit' or 'drift'), and too many levels for the memory of the method.
 ///
 /// Examples
 /// --------
@@ -129,8 +131,8 @@ impl Adaptive {
 impl Adaptive {
     #[new]
     #[pyo3(
-        signature = (model, *, method="refit", start="off", **options),
-        text_signature = "(model, *, method='refit', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None)"
+        signature = (model, *, method="auto", start="off", **options),
+        text_signature = "(model, *, method='auto', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None)"
     )]
     fn new(
         py: Python<'_>,

@@ -27,7 +27,7 @@ pub(crate) struct Adapt {
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: AdaptStart,
     /// What learns, and how
-    #[arg(long, default_value = "refit", value_parser = learners())]
+    #[arg(long, default_value = "auto", value_parser = learners())]
     pub(crate) method: Learner,
     #[command(flatten)]
     pub(crate) repair: Repair,

@@ -75,7 +75,7 @@ fn every_method_prints_and_writes_what_it_learned() {
     assert!(text(&done.stdout).contains("each sample before it was learned from"));
     let done = run(folder.path(), "inspect adapted.json");
     assert!(
-        text(&done.stdout).contains("adapted (refit) over 1500 samples"),
+        text(&done.stdout).contains("adapted (auto) over 1500 samples"),
         "{}",
         text(&done.stdout)
     );

@@ -65,12 +65,12 @@ fn every_learner_runs_in_a_scenario() {
         // What learns nothing restarts its inverse where the target turns; increments follow the
         // noise of a loop.
         let most = match learner {
-            Learner::Refit | Learner::Drift | Learner::LeastSquares => 1.0,
+            Learner::Auto | Learner::Refit | Learner::Drift | Learner::LeastSquares => 1.0,
             _ => 2.0,
         };
         assert!(adaptive < most * fixed, "{learner}: {adaptive} {fixed}");
     }
-    assert_eq!(run(None), run(Some(Learner::Refit)));
+    assert_eq!(run(None), run(Some(Learner::Auto)));
 }
 
 /// A model with a thermal body learns its weights in the loop. A warmer room is a shift, which

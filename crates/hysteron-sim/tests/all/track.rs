@@ -35,7 +35,7 @@ fn learners_refuse_what_they_do_not_have() {
     let method = "method = \"least-squares\"";
     for (to, named) in [
         ("method = \"gradient\"", "take `increments`"),
-        ("method = \"newton\"", "one of fixed, refit"),
+        ("method = \"newton\"", "one of auto, fixed, refit"),
         (
             "method = \"refit\"",
             "`forgetting` is an option of `drift`, `least-squares`",

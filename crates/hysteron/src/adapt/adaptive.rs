@@ -1,6 +1,7 @@
 //! A model that learns while it runs, sample by sample.
 
 use super::basis::DriftBasis;
+use super::learner::Learner;
 use super::learns::{Core, Learns};
 use super::options::AutoOptions;
 use super::refit::Refit;
@@ -117,7 +118,7 @@ impl Adaptive {
     /// Several learners of one model side by side: the model as it is, the coefficients of `drift`,
     /// all weights by increments, by least squares and by refits, and the trend of the refits.
     /// Their mean is the model, each weighted by how well it has predicted lately; see
-    /// [`Learner::Auto`](crate::Learner::Auto).
+    /// [`Learner::Auto`].
     ///
     /// # Errors
     /// As [`Adaptive::new`].
@@ -127,13 +128,16 @@ impl Adaptive {
             basis,
             coefficients,
         } = drift;
+        let coefficients = Learns::coefficients(&model, basis, &coefficients, options.drift)?;
+        let increments = Learns::weights_of(&model, options.increments)?;
         let mut learners = vec![
-            Learns::coefficients(&model, basis, &coefficients, options.drift)?,
-            Learns::weights_of(&model, options.increments)?,
+            (Learner::Drift.name(), coefficients),
+            (Learner::Increments.name(), increments),
         ];
         if let Some((squares, refit)) = options.squares {
-            learners.push(Learns::weights_of(&model, squares)?);
-            learners.push(Learns::refits(&model, refit)?);
+            let squares = Learns::weights_of(&model, squares)?;
+            learners.push((Learner::LeastSquares.name(), squares));
+            learners.push((Learner::Refit.name(), Learns::refits(&model, refit)?));
         }
         Self::over(&model, Learns::mixture(&model, learners)?)
     }
@@ -378,6 +382,16 @@ impl Adaptive {
         };
         let solution = self.stages().invert(&inverse, operators, stages, wanted);
         solution.map_err(|error| self.offline.worded(error))
+    }
+
+    /// The learners that a [mixture](Adaptive::mixing) has, each with its share of the model;
+    /// otherwise empty.
+    #[must_use]
+    pub fn shares(&self) -> Vec<(&'static str, f64)> {
+        match &self.learner {
+            Learns::Mixture(mixture) => mixture.shares(),
+            _ => Vec::new(),
+        }
     }
 
     /// The current weights, row by row.

@@ -72,7 +72,10 @@ impl Learns {
     }
 
     /// Several learners of one model side by side.
-    pub(super) fn mixture(model: &Model, learners: Vec<(Core, Self)>) -> Result<(Core, Self)> {
+    pub(super) fn mixture(
+        model: &Model,
+        learners: Vec<(&'static str, (Core, Self))>,
+    ) -> Result<(Core, Self)> {
         let (core, mixture) = Mixture::new(model, learners)?;
         Ok((core, Self::Mixture(Box::new(mixture))))
     }

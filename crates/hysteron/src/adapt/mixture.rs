@@ -8,6 +8,7 @@
 //! keeps, is for the stroke to come: its shares come from the errors of weights as they were at the
 //! last turning point of the input.
 
+use super::learner::Learner;
 use super::learns::{Core, Learns, writable};
 use super::shares::Shares;
 use super::window::TURN;
@@ -28,6 +29,7 @@ const TREND: f64 = 0.5;
 /// A learner that shares no state with the others.
 #[derive(Debug, Clone)]
 struct Expert {
+    name: &'static str,
     core: Core,
     state: OperatorState,
     learns: Learns,
@@ -92,18 +94,21 @@ pub(super) struct Mixture {
 impl Mixture {
     /// A mixture of `learners` of `model`, and of the model as it is. A refit has its trend beside
     /// it.
-    pub(super) fn new(model: &Model, mut learners: Vec<(Core, Learns)>) -> Result<(Core, Self)> {
+    pub(super) fn new(
+        model: &Model,
+        mut learners: Vec<(&'static str, (Core, Learns))>,
+    ) -> Result<(Core, Self)> {
         let (core, state) = (writable(model)?, model.within().plain()?.start());
-        learners.insert(0, Learns::nothing(model)?);
+        learners.insert(0, (Learner::Fixed.name(), Learns::nothing(model)?));
         let refit = learners
             .iter()
-            .position(|(_, learns)| matches!(learns, Learns::Refitter(_)));
+            .position(|(_, (_, learns))| matches!(learns, Learns::Refitter(_)));
         if refit.is_some() {
             let (_, nothing) = Learns::nothing(model)?;
-            learners.push((core.clone(), nothing));
+            learners.push(("trend", (core.clone(), nothing)));
         }
         let trend = refit.map(|refit| (refit, learners.len() - 1));
-        let experts = learners.into_iter().map(|(own, learns)| {
+        let experts = learners.into_iter().map(|(name, (own, learns))| {
             let mut state = state.clone();
             own.rebase(&mut state)?;
             let (weights, offset) = (learns.weights(), learns.level());
@@ -113,6 +118,7 @@ impl Mixture {
                 offset,
             };
             Ok(Expert {
+                name,
                 core: own,
                 state,
                 learns,
@@ -144,6 +150,12 @@ impl Mixture {
             experts,
         };
         Ok((core, mixture))
+    }
+
+    /// The experts, each with its share of the model.
+    pub(super) fn shares(&self) -> Vec<(&'static str, f64)> {
+        let names = self.experts.iter().map(|expert| expert.name);
+        names.zip(self.shares.far.all().iter().copied()).collect()
     }
 
     pub(super) fn weights(&self) -> &[f64] {
@@ -182,7 +194,7 @@ impl Mixture {
             outputs.push(learning.output);
             outcomes.push(learning.outcome);
         }
-        let output = self.shares.near.mean(&outputs);
+        let output = self.shares.near.mean(outputs.iter().copied());
         let outcome = joint(&outcomes);
         let before = self.stuck;
         self.stuck = match outcome {
@@ -293,13 +305,16 @@ impl Mixture {
 
     /// Writes the mean of the experts to `core`.
     fn mix(&mut self, core: &mut Core) -> Result<()> {
-        self.weights.fill(0.0);
-        self.offset = 0.0;
-        for (share, expert) in self.shares.far.all().iter().zip(&self.experts) {
-            self.offset += share * expert.learns.level();
-            let own = expert.learns.weights();
-            let pairs = self.weights.iter_mut().zip(own);
-            pairs.for_each(|(mean, weight)| *mean += share * weight);
+        let shares = &self.shares.far;
+        self.offset = shares.mean(self.experts.iter().map(|expert| expert.learns.level()));
+        let each: Vec<Vec<f64>> = self
+            .experts
+            .iter()
+            .map(|expert| expert.learns.weights())
+            .collect();
+        for (n, mean) in self.weights.iter_mut().enumerate() {
+            // Rounding may take a mean of zeros and small numbers below zero.
+            *mean = shares.mean(each.iter().map(|weights| weights[n])).max(0.0);
         }
         Ok(core.set_weights(&self.weights)?)
     }

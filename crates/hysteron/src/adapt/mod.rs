@@ -4,7 +4,8 @@
 //! output, then learned from. `learner` is the table of learners and their options, `options` what
 //! these come to for a model. `adaptive` is the model that learns
 //! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
-//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `load` and `unknown_load`
+//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `mixture` has several of these side by side, each with one of the `shares`;
+//! `learns` is what finds the weights, one of them. `load` and `unknown_load`
 //! do the same for the shift of an unknown load. `counts` counts what was done with the samples,
 //! `stuck` finds where a channel stood still, and `drift` tells how far the model moved.
 
@@ -82,6 +83,9 @@ pub struct Adapted {
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
     pub stuck: Vec<Stuck>,
+    /// The learners that [`Learner::Auto`] mixes, each with its share of the model; empty for the
+    /// other learners. *trend* is the refit, and half as far beyond it as it moved in a cycle.
+    pub shares: Vec<(&'static str, f64)>,
     /// What [`Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
     /// The options of what learned.
@@ -136,7 +140,8 @@ impl Adapted {
 /// # Errors
 /// - [`Error::Recording`] for an invalid recording.
 /// - [`Error::Fit`] for a model with a thermal body, for a model that depends on a load with a
-///   learner other than [`Learner::Refit`], [`Learner::Drift`] and [`Learner::Load`], and for
+///   learner other than [`Learner::Auto`], [`Learner::Refit`], [`Learner::Drift`] and
+///   [`Learner::Load`], and for
 ///   options that the learner does not use.
 /// - [`Error::Core`] for options out of range and negative weights.
 /// - The error that `progress` returns.
@@ -197,6 +202,7 @@ pub fn adapt(
         fixed,
         from_on,
         probation,
+        shares: adaptive.shares(),
         shift: None,
         options: learned_by,
     }
@@ -212,6 +218,7 @@ struct Learned {
     fixed: Vec<f64>,
     from_on: bool,
     probation: usize,
+    shares: Vec<(&'static str, f64)>,
     shift: Option<ShiftFound>,
     options: EstimatorOptions,
 }
@@ -277,6 +284,7 @@ impl Learned {
             thirds,
             late,
             again,
+            shares: self.shares,
             shift: self.shift,
             options: self.options,
         })
@@ -426,6 +434,9 @@ impl EstimatorOptions {
         match self {
             Self::Fixed => json!({}),
             Self::Auto(auto) => json!({
+                "gate": auto.drift.gate,
+                "burst": auto.drift.burst,
+                "movement": auto.drift.movement,
                 "drift": described(&auto.drift),
                 "increments": described(&auto.increments),
                 "least-squares": auto.squares.map(|(squares, _)| described(&squares)),

@@ -32,6 +32,8 @@ const DEVIATION: f64 = 0.3;
 const SHARE: f64 = 0.5;
 
 /// The options that a learner runs with, all of them known.
+// A handful of these exist at a time, and copying is what they are for.
+#[allow(clippy::large_enum_variant)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EstimatorOptions {
     /// Nothing learns.

@@ -54,9 +54,13 @@ impl Shares {
         &self.shares
     }
 
-    /// The mean of the predictors' `values`, each by its share.
-    pub(super) fn mean(&self, values: &[f64]) -> f64 {
-        self.shares.iter().zip(values).map(|(v, y)| v * y).sum()
+    /// The mean of the predictors' `values`, each by its share. Where all are equal it is exactly
+    /// their value.
+    pub(super) fn mean(&self, values: impl IntoIterator<Item = f64>) -> f64 {
+        let mut values = values.into_iter();
+        let first = values.next().unwrap_or_default();
+        let others = self.shares[1..].iter().zip(values);
+        first + others.map(|(v, y)| v * (y - first)).sum::<f64>()
     }
 
     /// Gives the shares anew after the predictors had these `errors`. Errors that are not finite

@@ -84,6 +84,7 @@ pub(super) fn adapt(
         fixed,
         from_on,
         probation,
+        shares: Vec::new(),
         shift: Some(found),
         options: learned_by,
     }
