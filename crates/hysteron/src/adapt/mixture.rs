@@ -17,12 +17,6 @@ use crate::model::{Model, OperatorState};
 use crate::series::Turning;
 use hysteron_core::{Channel, Learning, Outcome, Reading, Watch, Watched};
 
-/// The loss of a usual error, one sample ahead. Independent errors of a normal distribution would
-/// have ½; those of neighbouring samples are alike.
-const NEAR: f64 = 0.2;
-/// As [`NEAR`], a stroke ahead: the errors of a stroke are more alike.
-const FAR: f64 = 0.1;
-
 /// How far a model that settles goes on after the last cycle, in differences of the last two.
 const TREND: f64 = 0.5;
 
@@ -127,10 +121,10 @@ impl Mixture {
         });
         let experts: Vec<Expert> = experts.collect::<Result<_>>()?;
         let (low, high) = core.output_range();
-        let shares = |rate| Shares::new(experts.len(), high - low, rate);
+        let shares = || Shares::new(experts.len(), high - low);
         let shares = Both {
-            near: shares(NEAR),
-            far: shares(FAR),
+            near: shares(),
+            far: shares(),
         };
         let tolerance = TURN * model.plane().levels() as f64;
         let mixture = Self {

@@ -13,6 +13,10 @@
 /// The part of all shares that is given to all alike after each sample.
 pub(super) const GIVEN: f64 = 0.01;
 
+/// The loss of a usual error. Independent errors of a normal distribution would have ½; those of
+/// neighbouring samples are alike.
+const RATE: f64 = 0.2;
+
 /// A squared error counts as at most so many usual ones: a spike says little about a predictor.
 const CAP: f64 = 9.0;
 
@@ -26,8 +30,6 @@ const FLOOR: f64 = 1e-5;
 #[derive(Debug, Clone)]
 pub(super) struct Shares {
     shares: Vec<f64>,
-    /// The loss of a usual error.
-    rate: f64,
     /// The usual squared error of each predictor.
     usual: Vec<f64>,
     /// Errors that `usual` is the mean of, up to [`MEMORY`].
@@ -37,13 +39,12 @@ pub(super) struct Shares {
 
 impl Shares {
     /// Shares of so many predictors: nearly all belongs to the first. `range` is that of the
-    /// output; `rate` is the loss of an error of the usual size.
-    pub(super) fn new(count: usize, range: f64, rate: f64) -> Self {
+    /// output.
+    pub(super) fn new(count: usize, range: f64) -> Self {
         let mut shares = vec![GIVEN / count as f64; count];
         shares[0] += 1.0 - GIVEN;
         Self {
             shares,
-            rate,
             usual: vec![0.0; count],
             seen: 0.0,
             floor: (FLOOR * range).powi(2).max(f64::MIN_POSITIVE),
@@ -76,7 +77,7 @@ impl Shares {
             square if square.is_finite() => square,
             _ => CAP,
         };
-        let losses = errors.iter().map(|&error| self.rate * capped(error, best));
+        let losses = errors.iter().map(|&error| RATE * capped(error, best));
         let losses: Vec<f64> = losses.collect();
         self.update(&losses);
         self.seen = (self.seen + 1.0).min(MEMORY);
@@ -112,7 +113,7 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(1998);
         for _ in 0..300 {
             let count = rng.random_range(2..7);
-            let mut shares = Shares::new(count, 1.0, 1.0);
+            let mut shares = Shares::new(count, 1.0);
             let first = shares.all().to_vec();
             let samples = rng.random_range(1..400);
             let mut mixed = 0.0;
@@ -162,7 +163,7 @@ mod tests {
         ];
         for _ in 0..200 {
             let count = rng.random_range(2..7);
-            let mut shares = Shares::new(count, rng.random_range(0.0..2.0), 0.5);
+            let mut shares = Shares::new(count, rng.random_range(0.0..2.0));
             for _ in 0..100 {
                 let mut error = || match rng.random_bool(0.2) {
                     true => odd[rng.random_range(0..odd.len())],
