@@ -1,11 +1,12 @@
 //! The stages before and after the operators, from the drive of an actuator to its output.
 //!
 //! ```text
-//! drive ─▶ body ─▶ temperature ─▶ axis (load, spacing) ─▶ operators ─▶ behind ─▶ output
+//! drive ─▶ body ─▶ temperature ─▶ axis (load, registration, spacing) ─▶ operators ─▶ behind ─▶ output
 //! ```
 //!
 //! - [`Body`]: first-order heating and cooling, from the drive to the temperature.
 //! - [`Axis`]: the load shifts the temperature axis; the spacing places the levels.
+//! - [`Registration`]: at which temperature each threshold is passed, up and down.
 //! - [`Load`]: what the load does to axis, stroke and offset.
 //! - [`Parts`]: weights that depend on the load.
 //! - [`Behind`]: the stages behind the operators, a file for each.
@@ -25,6 +26,7 @@ mod invert;
 mod lag;
 mod mix;
 mod parts;
+mod registration;
 mod stage;
 mod state;
 
@@ -40,4 +42,5 @@ pub use invert::Wanted;
 pub use lag::Lag;
 pub use mix::mix;
 pub use parts::{MAX_PARTS, Parts, Placed, bernstein};
+pub use registration::Registration;
 pub use state::{RATE_NUMBERS, Rates, STATE_NUMBERS, Sample, StageState};

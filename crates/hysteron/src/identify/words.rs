@@ -195,6 +195,7 @@ impl Fit<'_> {
             ("start", "on") => self.start(Start::On),
             ("start", "rest") => self.start(Start::Rest),
             ("start", "unknown") => self.start(Start::Unknown),
+            ("load_law", "auto") => self.load_law(LoadLaw::Auto),
             ("load_law", "shift") => self.load_law(LoadLaw::Shift),
             ("load_law", "weights") => self.load_law(LoadLaw::Weights),
             ("load_degree", "auto") => self.load_degree(Auto),
