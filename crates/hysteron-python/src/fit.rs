@@ -57,7 +57,9 @@ use pyo3::types::{PyDict, PyString};
 /// load_law : {'auto', 'shift', 'weights'}
 ///     What a load changes, where the recordings have one. 'shift': it shifts the axis of the
 ///     operators, as stress shifts the temperatures of a shape-memory alloy, and weights and offset
-///     follow with `load_degree`. 'weights': weights and offset only.
+///     follow with `load_degree`. 'weights': weights and offset only. 'auto': the one that predicts
+///     loads left out best, of these and a registration, which moves the thresholds of rising and of
+///     falling input each along a curve; that one, where there is no load to leave out.
 /// load_degree : int or 'auto'
 ///     Order of the weights as a function of the load, 0 to 5. 'auto': the one that predicts loads
 ///     left out, of three or more, and otherwise 1.

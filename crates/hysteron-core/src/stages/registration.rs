@@ -66,8 +66,16 @@ impl<'a, T: Real> Registration<'a, T> {
     }
 
     /// The steepest slope of a position over `a T − s`, at any load: between two loads no slope is
-    /// steeper than at both.
-    pub(crate) fn steepest(&self) -> T {
+    /// steeper than at both. 1 without a registration.
+    ///
+    /// ```
+    /// use hysteron_core::Registration;
+    /// let rising = &[5.0, 5.5];
+    /// let registration = Registration { knots: &[0.0, 2.0], rising, falling: &[] };
+    /// assert_eq!(registration.steepest(), 4.0);
+    /// ```
+    #[must_use]
+    pub fn steepest(&self) -> T {
         let rows = [self.rising, self.falling].into_iter();
         let rows = rows.flat_map(|rows| rows.chunks_exact(self.knots.len().max(1)));
         let slopes = rows.flat_map(|row| {
@@ -77,8 +85,9 @@ impl<'a, T: Real> Registration<'a, T> {
         slopes.fold(T::ONE, T::max)
     }
 
-    /// The size of its knots, whose rounding a position has.
-    pub(crate) fn size(&self) -> T {
+    /// The size of its knots, whose rounding a position has: that of the first and the last.
+    #[must_use]
+    pub fn size(&self) -> T {
         match self.knots {
             [first, .., last] => first.max(-*first) + last.max(-*last),
             _ => T::ZERO,

@@ -88,9 +88,10 @@ pub const FIT_OPTIONS: [FitOption; 18] = [
     },
     FitOption {
         name: "load_law",
-        default: "`shift`",
-        range: "`shift`, `weights`",
-        purpose: "what a load changes, if there is one",
+        default: "`auto`",
+        range: "`auto`, `shift`, `weights`",
+        purpose: "what a load changes, if there is one; `auto`: what predicts loads left out best, of \
+                  a registration of the loops, a shift of the axis and weights",
     },
     FitOption {
         name: "load_degree",

@@ -57,9 +57,14 @@ pub(super) struct Report {
     loads: Vec<f64>,
     /// Mean slope of the shift.
     slope: f64,
+    /// Those with hardly any stroke: they have no say in the choice of the law.
+    silent: Vec<f64>,
     /// The law taken.
     chosen: Tried,
-    /// The laws tried, and their errors on loads left out, in percent of the range.
+    /// Its error on loads left out, in percent of the range of outputs at such a load; `None`
+    /// without a load between two others.
+    left_out_percent: Option<f64>,
+    /// The laws tried, and their errors on loads left out, or fitted where none can be.
     tried: Vec<(Tried, f64)>,
 }
 
@@ -182,7 +187,7 @@ pub(super) fn find(
             }
         }
     }
-    let Some((moves, law, _)) = best else {
+    let Some((moves, law, error)) = best else {
         return Err(Error::Fit("no law of the load was tried".into()));
     };
     let curves = &moves.curves;
@@ -202,7 +207,12 @@ pub(super) fn find(
         report: Report {
             loads: groups.knots.clone(),
             slope: curves.slope(),
+            silent: (0..groups.knots.len())
+                .filter(|g| !groups.telling[*g])
+                .map(|g| groups.knots[g])
+                .collect(),
             chosen: law,
+            left_out_percent: (inner > 0).then_some(error),
             tried,
         },
         curves,

@@ -154,9 +154,13 @@ impl Search<'_> {
             let slope = |n: usize| sum(n) - h;
             let square = mean(&|n| slope(n) * slope(n));
             let product = mean(&|n| slope(n) * (self.samples.output[n] - y));
-            // A load with hardly any stroke has a small gain, and none has a gain below zero.
+            // No load has a gain below zero. One with hardly any stroke does not show the shape: its
+            // gain is its height.
             let (low, high) = spans[g];
-            gains[g] = (product / square.max(f64::MIN_POSITIVE)).max(0.05 * (high - low));
+            gains[g] = match self.groups.telling[g] {
+                true => (product / square.max(f64::MIN_POSITIVE)).max(0.05 * (high - low)),
+                false => high - low,
+            };
             offsets[g] = y - gains[g] * h;
         }
         let most = gains.iter().fold(f64::MIN_POSITIVE, |a, b| a.max(*b));
@@ -259,22 +263,14 @@ impl Search<'_> {
         scaled.map(|recording| thin(recording, stride)).collect()
     }
 
-    /// The recordings with each load's loop scaled to its own height, and one with hardly any to that
-    /// of the largest, so that it has little say. Where the load changes all the time they stay as
-    /// they are.
+    /// The recordings with each load's loop scaled to its own height. Where the load changes all the
+    /// time they stay as they are.
     fn scaled(&self) -> Vec<Recording> {
         let mut scaled = self.recordings.to_vec();
         let Some(group) = &self.groups.group else {
             return scaled;
         };
-        let mut spans = self.spans(group);
-        let height = |span: &(f64, f64)| span.1 - span.0;
-        let most = spans.iter().map(height).fold(0.0, f64::max);
-        for (span, telling) in spans.iter_mut().zip(&self.groups.telling) {
-            if !telling {
-                span.1 = span.0 + most;
-            }
-        }
+        let spans = self.spans(group);
         let outputs = scaled
             .iter_mut()
             .flat_map(|recording| &mut recording.output);
