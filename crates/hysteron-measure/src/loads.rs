@@ -101,6 +101,7 @@ fn chosen(model: &Model) -> String {
         };
         match name.as_str() {
             "weights" => format!("weights, order {}", of("degree")),
+            "gain" => format!("shift, {}", of("stroke")),
             name => format!("{name}, {}", of("stroke")),
         }
     })

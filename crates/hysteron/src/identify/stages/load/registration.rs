@@ -42,7 +42,7 @@ pub(super) struct Loops {
 }
 
 impl Loops {
-    /// `None` where a load that tells its shift lacks a branch up or a branch down.
+    /// `None` where a load that tells its shift lacks a branch up or a branch down, or any stroke.
     pub(super) fn new(
         recordings: &[Recording],
         samples: &Samples,
@@ -70,6 +70,11 @@ impl Loops {
             let own = || (0..group.len()).filter(|n| group[*n] == g);
             let (low, high) = range(&own().map(|n| samples.input[n]).collect::<Vec<_>>());
             let (off, on) = range(&own().map(|n| sign * samples.output[n]).collect::<Vec<_>>());
+            // Fractions of no stroke are none.
+            let moves = on > off;
+            if !moves {
+                return None;
+            }
             let mut ways: [Vec<(f64, f64)>; 2] = [Vec::new(), Vec::new()];
             for (_, span) in spans.iter().filter(|(at, _)| *at == g) {
                 let own = &samples.input[span.clone()];
