@@ -79,7 +79,7 @@ pub(crate) fn print(folder: &Path) -> Result<()> {
         }
     }
     let means = logarithms.map(|sum| f64::exp(sum / count));
-    row("geometric mean |", "", means);
+    row("geometric mean |", "all", means);
     println!();
     Ok(())
 }
