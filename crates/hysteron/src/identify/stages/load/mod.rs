@@ -163,8 +163,12 @@ pub(super) fn find(
     };
     let inner = search.inner().count();
     let mut ways = Vec::new();
-    let open = options.load_law == LoadLaw::Auto && options.load_degree.is_none();
-    if open && groups.group.is_some() {
+    // A range is one of inputs, which are no positions behind a registration.
+    let open = options.load_law == LoadLaw::Auto
+        && options.load_degree.is_none()
+        && options.range.is_none()
+        && groups.group.is_some();
+    if open {
         ways.extend(search.registered()?);
     }
     ways.push(search.shifted(false)?);
