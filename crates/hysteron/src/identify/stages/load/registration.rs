@@ -8,10 +8,10 @@ use crate::recording::Recording;
 use crate::series::{branch_spans, range, usual_tolerance};
 
 /// The fractions. Nearer to the ends a loop tells little but its noise.
-const FRACTIONS: [f64; 15] = [
-    0.05, 0.08, 0.12, 0.16, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.84, 0.88, 0.92, 0.95,
+const FRACTIONS: [f64; 17] = [
+    0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.93, 0.96, 0.98,
 ];
-const HALF: usize = 7;
+const HALF: usize = 8;
 
 /// A branch of the major loop covers this share of the inputs at its load.
 const MAJOR: f64 = 0.85;
