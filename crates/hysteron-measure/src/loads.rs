@@ -2,8 +2,8 @@
 //! `cargo run --release -p hysteron-measure -- loads ../shared/data`
 
 use crate::folder;
+use crate::judged::{error, options, read};
 use crate::result::Result;
-use crate::stages::{error, options, read};
 use hysteron::{Columns, Fit, LoadLaw, Model, Recording, Start};
 use std::path::Path;
 

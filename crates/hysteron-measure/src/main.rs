@@ -12,6 +12,7 @@ mod fleet_prior;
 mod folder;
 mod genuine;
 mod instructions;
+mod judged;
 mod leaderboard;
 mod loads;
 mod modules;

@@ -1,12 +1,10 @@
 //! Measures the stages of a model on recordings, and prints `docs/stages.md`:
 //! `cargo run --release -p hysteron-measure -- stages ../shared/data`
 
+use crate::judged::{error, options, read};
 use crate::result::Result;
 use crate::{folder, loads};
-use hysteron::{
-    Auto, Columns, Fit, FitOptions, Model, Policy, Recording, Repair, Spacing, Start, Status,
-    Surroundings, evaluate_from,
-};
+use hysteron::{Auto, Columns, Fit, Policy, Spacing, Start, Status, Surroundings};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
@@ -16,23 +14,6 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     spacing(&folder)?;
     valve(&folder)?;
     drive(&folder)
-}
-
-pub(crate) fn read(folder: &Path, name: &str, columns: Columns<'_>) -> Result<Recording> {
-    Ok(Recording::read(&folder.join(name), columns, Repair::Refuse)?.0)
-}
-
-pub(crate) fn options(levels: usize) -> FitOptions {
-    FitOptions {
-        levels,
-        ..FitOptions::plain()
-    }
-}
-
-/// The error of a model on a recording, in percent of the recording's range.
-pub(crate) fn error(model: &Model, recording: &Recording, start: Start) -> Result<f64> {
-    let forward = evaluate_from(model, recording, start)?.forward;
-    Ok(forward.nrmse_percent.unwrap_or(f64::NAN))
 }
 
 /// Sharp loops with equal and with chosen distances of the levels.

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::plane::Plane;
 use crate::scalar::Real;
 use crate::stages::constant::{Constant, Constants, Declared, Range, Unit};
+use crate::stages::loaded::Loaded;
 use crate::stages::registration::Registration;
 use crate::target::Direction;
 
@@ -27,35 +28,6 @@ pub struct Load<'a, T> {
     pub gains: &'a [T],
     /// The offset `o`, in the unit of the output.
     pub offsets: &'a [T],
-}
-
-/// The values of all curves at one load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loaded<T> {
-    /// The scale `a(σ)`.
-    pub scale: T,
-    /// The shift `s(σ)`.
-    pub shift: T,
-    /// The gain `g(σ)`.
-    pub gain: T,
-    /// The offset `o(σ)`.
-    pub offset: T,
-    /// The row of the registration at the known load below.
-    pub row: usize,
-    /// How far the load is on the way to the next one, from 0 to 1.
-    pub part: T,
-}
-
-impl<T: Real> Loaded<T> {
-    /// Without a load.
-    pub const NONE: Self = Loaded {
-        scale: T::ONE,
-        shift: T::ZERO,
-        gain: T::ONE,
-        offset: T::ZERO,
-        row: 0,
-        part: T::ZERO,
-    };
 }
 
 impl<T: Real> Load<'_, T> {

@@ -6,10 +6,11 @@ use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::{Model, Output};
 use crate::scalar::Real;
-use crate::stages::axis::{Axis, Loaded};
+use crate::stages::axis::Axis;
 use crate::stages::behind::{self, Behind};
 use crate::stages::body::Body;
 use crate::stages::constant::{Constant, Constants, Declared, Range};
+use crate::stages::loaded::Loaded;
 use crate::stages::state::{Rates, Sample, StageState};
 use crate::state::State;
 

@@ -1,8 +1,8 @@
 //! The registration: at which temperature each threshold is passed, for rising and for falling input.
 
 use crate::scalar::Real;
-use crate::stages::axis::Loaded;
 use crate::stages::constant::{Constant, Constants, Declared, Range, Unit};
+use crate::stages::loaded::Loaded;
 use crate::target::Direction;
 
 /// Two curves over the temperature, which move with the load: one for the thresholds of rising and
