@@ -106,7 +106,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         column: int = 0,
         time_column: int | None = None,
         load_column: int | None = None,
-        load_law: Literal["shift", "weights"] = "shift",
+        load_law: Literal["auto", "shift", "weights"] = "auto",
         load_degree: int | Literal["auto"] = "auto",
         spacing: Literal["auto", "uniform"] = "auto",
         creep: int | Literal["auto", "off"] = "off",

@@ -316,7 +316,7 @@ def test_laws_of_the_load():
 @pytest.mark.parametrize(
     "options, error, message",
     [
-        ({"load_law": "shfit"}, ValueError, "'shift', 'weights' is needed. Did you mean 'shift'"),
+        ({"load_law": "shfit"}, ValueError, "'auto', 'shift', 'weights' is needed. Did you mean 'shift'"),
         ({"spacing": "even"}, ValueError, "`spacing` is 'even'"),
         ({"creep": "on"}, ValueError, "'off', 'auto'"),
         ({"creep": 2.5}, TypeError, "a whole number"),

@@ -142,6 +142,7 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
         ridge: args.ridge,
         robust: args.robust == args::Robust::Auto,
         load_law: match args.load_law {
+            args::LoadLaw::Auto => LoadLaw::Auto,
             args::LoadLaw::Shift => LoadLaw::Shift,
             args::LoadLaw::Weights => LoadLaw::Weights,
         },

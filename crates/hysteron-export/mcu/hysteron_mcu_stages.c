@@ -131,7 +131,8 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
         code = place(state, load);
     }
     if (code == HYS_OK) {
-        code = hys_step(&state->operators, seen_at(actuator, &at, temperature), &sum);
+        hys_real seen = seen_at(actuator, &at, state->operators.input, temperature);
+        code = hys_step(&state->operators, seen, &sum);
     }
     if (code != HYS_OK) {
         return code;

@@ -1,11 +1,12 @@
 /* Actuators with stages around the hysteresis, for microcontrollers:
  *
- *   drive -> body -> temperature -> load, spacing -> operators -> stages behind -> output
+ *   drive -> body -> temperature -> load, registration, spacing -> operators -> stages behind -> output
  *
  * Body: first-order heating and cooling. Load: curves over the load that shift and scale the axis
- * of the operators and change stroke and offset. Spacing: unequal distances of the levels. What
- * stands behind the operators is in hysteron_mcu_behind.h. Each of the stages may be missing. The
- * inverse is exact for the sample.
+ * of the operators and change stroke and offset. Registration: at which temperature rising and
+ * falling input pass each threshold. Spacing: unequal distances of the levels. What stands behind the
+ * operators is in hysteron_mcu_behind.h. Each of the stages may be missing. The inverse is exact for
+ * the sample.
  *
  * The sample time is fixed when the model is exported: the factors e^(-dt/tau) are constants. So
  * this needs no library either, and what hysteron_mcu.h says of compilers, errors and threads holds
@@ -13,7 +14,8 @@
  *
  * Worst case of one call with K levels and n loads:
  *   hys_actuator_step          two bisections, of at most log2(n) + 1 and log2(K) + 2 halvings for
- *                              each curve and the spacing, then one hys_step
+ *                              each curve and the spacing, one for each curve of a registration, then
+ *                              one hys_step
  *   hys_actuator_inverse_step  one hys_inverse_step, these bisections, one hys_actuator_step
  *   hys_actuator_start         one hys_step for each turning point of the model's start
  * Where weights depend on the load, a step at another load than the one before first makes the table
@@ -25,7 +27,7 @@
 #include "hysteron_mcu.h"
 
 /* Layout of hys_actuator. Models that were exported for another layout do not compile. */
-#define HYS_STAGES_LAYOUT 3
+#define HYS_STAGES_LAYOUT 4
 
 #define HYS_MOST_PARTS 8
 
@@ -79,6 +81,8 @@ typedef struct {
     const hys_model *operators;  /* without offset and sign, which are below */
     hys_list loads;              /* loads at which the curves are known, ascending */
     hys_list shifts, scales, gains, offsets; /* the curves at these loads */
+    hys_list knots;              /* registration: positions on the axis, ascending */
+    hys_list rising, falling;    /* temperatures at the knots, up and down: a row for each load */
     hys_list spacing;            /* the K + 1 corners of the grid, ascending */
     hys_list curve_sums, curve_outputs; /* knots of the output curve, ascending */
     hys_list creep;              /* the share of the sum that creeps, of each term */
@@ -86,7 +90,7 @@ typedef struct {
     const hys_parts *parts;      /* weights that depend on the load; null without */
     unsigned there;              /* a bit for each stage behind the operators, in their order */
     hys_real start_input;        /* the operators' input at the start */
-    hys_real steepest;           /* steepest slope of the spacing; 1 without one */
+    hys_real steepest;           /* steepest slope of registration and spacing; 1 without them */
     hys_real ambient, gain;      /* body: temperature at rest without drive, and per unit of it */
     hys_real heating, cooling;   /* body: e^(-dt/tau) */
     hys_real factors[HYS_BEHIND_FACTORS]; /* e^(-dt/tau) of the stages behind the operators */

@@ -41,8 +41,9 @@ static int solve(hys_state *state, hys_real aim, int heading, hys_real tolerance
     return code;
 }
 
-/* The temperature at an input of the operators. */
-static hys_real temperature_at(const hys_actuator *actuator, const loaded_axis *at, hys_real input)
+/* The temperature that leads the operators to an input, from below or from above. */
+static hys_real leading_to(const hys_actuator *actuator, const loaded_axis *at, int rising,
+                           hys_real input)
 {
     const hys_model *model = actuator->operators;
     const hys_real *corners = actuator->spacing.numbers;
@@ -64,7 +65,35 @@ static hys_real temperature_at(const hys_actuator *actuator, const loaded_axis *
             ? corners[k + 1u]
             : corners[k] + (input - from) * ((corners[k + 1u] - corners[k]) / (to - from));
     }
+    if (actuator->knots.numbers != NULL) {
+        effective = registered(actuator, at, rising, 1, effective);
+    }
     return (effective + at->shift) / at->scale;
+}
+
+/* The operators' input, the temperature, and where the output is to go next. */
+typedef struct {
+    hys_real held, now;
+    int heading;
+} from_here;
+
+/* The temperature that leads the operators from where they are to an input. Where that is the same,
+ * every temperature between the two curves of a registration does it. */
+static hys_real temperature_at(const hys_actuator *actuator, const loaded_axis *at,
+                               const from_here *from, hys_real input)
+{
+    hys_real lowest;
+    if (actuator->falling.numbers == NULL || input > from->held) {
+        return leading_to(actuator, at, 1, input);
+    }
+    lowest = leading_to(actuator, at, 0, input);
+    if (input < from->held || from->heading == HYS_FALLING) {
+        return lowest;
+    }
+    if (from->heading == HYS_RISING) {
+        return leading_to(actuator, at, 1, input);
+    }
+    return hys_clamp(from->now, lowest, hys_max(leading_to(actuator, at, 1, input), lowest));
 }
 
 /* How far the operators' input may be from the exact one by rounding, where the temperature comes
@@ -73,6 +102,11 @@ static hys_real slack_of(const hys_actuator *actuator, const loaded_axis *at, hy
 {
     hys_real effective = at->scale * size + magnitude(at->shift);
     hys_real ends = magnitude(actuator->operators->max) + magnitude(actuator->operators->bottom);
+    const hys_list *knots = &actuator->knots;
+    if (knots->numbers != NULL) {
+        effective = effective
+            + (magnitude(knots->numbers[0]) + magnitude(knots->numbers[knots->count - 1u]));
+    }
     return EIGHT_EPSILON * (effective * actuator->steepest + ends);
 }
 
@@ -109,11 +143,11 @@ static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
 }
 
 /* The drive for an input of the operators, and the size of the numbers that it comes from. */
-static hys_real drive_to(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
-                         hys_real *size)
+static hys_real drive_to(const hys_actuator_state *state, const loaded_axis *at,
+                         const from_here *from, hys_real input, hys_real *size)
 {
     const hys_actuator *actuator = state->actuator;
-    hys_real temperature = temperature_at(actuator, at, input);
+    hys_real temperature = temperature_at(actuator, at, from, input);
     hys_real drive = drive_for(state, temperature);
     *size = magnitude(temperature);
     if (actuator->body) {
@@ -124,8 +158,8 @@ static hys_real drive_to(const hys_actuator_state *state, const loaded_axis *at,
 
 /* The drive at which a relay switches: at its level and not an ulp before it. One that has just
  * switched switches back where the input turns by an ulp: a branch that stays goes on. */
-static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
-                       hys_real drive, hys_real *size)
+static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at,
+                       const from_here *from, hys_real input, hys_real drive, hys_real *size)
 {
     const hys_actuator *actuator = state->actuator;
     hys_real aim = input, last = state->operators.input;
@@ -134,14 +168,14 @@ static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, h
         rising = is_rising(&state->operators) && state->operators.x > ZERO;
     }
     for (n = 0; n < 4; n++) {
-        hys_real seen = seen_at(actuator, at, heated(state, drive)), nudge;
+        hys_real seen = seen_at(actuator, at, last, heated(state, drive)), nudge;
         if (seen == input || (seen > input) == rising) {
             break;
         }
         /* In the unit of the operators' input, which need not be that of the temperature. */
         nudge = hys_max(actuator->operators->nudge, slack_of(actuator, at, *size));
         aim = rising ? aim + nudge : aim - nudge;
-        drive = drive_to(state, at, aim, size);
+        drive = drive_to(state, at, from, aim, size);
     }
     return drive;
 }
@@ -168,6 +202,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     const hys_actuator *actuator;
     const hys_model *model;
     loaded_axis at;
+    from_here from;
     hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets, low, high, most;
     int found = HYS_LIMITED;
     int code = usable_actuator(state);
@@ -195,13 +230,18 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     if (code != HYS_OK) {
         return code;
     }
+    from.heading = actuator->falls ? -heading : heading;
+    from.now = state->temperature;
+    from.held = state->operators.input;
+    if (model->kind != RELAY) {
+        from.held = hys_clamp(from.held, model->bottom, model->max);
+    }
     aim = behind_inverse(state, inward(state, target - at.offset)) / at.gain;
     if (is_finite(aim)) {
-        int inner = actuator->falls ? -heading : heading;
         /* Within so much of the sum, the output stays within its tolerance wherever it is. */
         hys_real within =
             tolerance == ZERO ? ZERO : tolerance / (behind_steepest(state) * at.gain);
-        code = solve(&state->operators, aim, inner, within, &input, &found);
+        code = solve(&state->operators, aim, from.heading, within, &input, &found);
         if (code != HYS_OK) {
             return code;
         }
@@ -209,9 +249,9 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         /* A lag that cannot move in a sample: stay. */
         input = hys_clamp(state->operators.input, model->bottom, model->max);
     }
-    to = drive_to(state, &at, input, &size);
+    to = drive_to(state, &at, &from, input, &size);
     if (model->kind == RELAY) {
-        to = nudged(state, &at, input, to, &size);
+        to = nudged(state, &at, &from, input, to, &size);
     }
     slack = slack_of(actuator, &at, size);
     code = hys_actuator_step(state, to, load, &reached);

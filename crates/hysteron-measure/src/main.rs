@@ -12,7 +12,9 @@ mod fleet_prior;
 mod folder;
 mod genuine;
 mod instructions;
+mod judged;
 mod leaderboard;
+mod loads;
 mod modules;
 mod profiles;
 mod recordings;
@@ -29,7 +31,7 @@ use std::process::ExitCode;
 /// A program: its name, what it prints, and what runs it with the words behind its name.
 type Program = (&'static str, &'static str, fn(&[String]) -> Result<()>);
 
-const PROGRAMS: [Program; 16] = [
+const PROGRAMS: [Program; 17] = [
     (
         "adaptation",
         "FOLDER: models adapted over recordings",
@@ -74,6 +76,11 @@ const PROGRAMS: [Program; 16] = [
         "leaderboard",
         "FOLDER: methods compared on held-out data",
         leaderboard::run,
+    ),
+    (
+        "loads",
+        "FOLDER: a load that was left out, predicted by each law",
+        loads::run,
     ),
     (
         "modules",

@@ -1,182 +1,19 @@
 //! Measures the stages of a model on recordings, and prints `docs/stages.md`:
 //! `cargo run --release -p hysteron-measure -- stages ../shared/data`
 
-use crate::folder;
+use crate::judged::{error, options, read};
 use crate::result::Result;
-use hysteron::{
-    Auto, Columns, Fit, FitOptions, LoadLaw, Model, Policy, Recording, Repair, Spacing, Start,
-    Status, Surroundings, evaluate_from,
-};
+use crate::{folder, loads};
+use hysteron::{Auto, Columns, Fit, Policy, Spacing, Start, Status, Surroundings};
 use std::path::Path;
-
-/// Levels of the fits under load.
-const LEVELS: usize = 30;
 
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let folder = folder::named(arguments)?;
     print!("{}", include_str!("text/stages.md"));
-    loads(&folder)?;
+    loads::print(&folder)?;
     spacing(&folder)?;
     valve(&folder)?;
     drive(&folder)
-}
-
-fn read(folder: &Path, name: &str, columns: Columns<'_>) -> Result<Recording> {
-    Ok(Recording::read(&folder.join(name), columns, Repair::Refuse)?.0)
-}
-
-fn options(levels: usize) -> FitOptions {
-    FitOptions {
-        levels,
-        ..FitOptions::plain()
-    }
-}
-
-/// The error of a model on a recording, in percent of the recording's range.
-fn error(model: &Model, recording: &Recording, start: Start) -> Result<f64> {
-    let forward = evaluate_from(model, recording, start)?.forward;
-    Ok(forward.nrmse_percent.unwrap_or(f64::NAN))
-}
-
-/// One load left out, predicted from the others.
-fn loads(folder: &Path) -> Result<()> {
-    println!("## A load that was left out\n");
-    println!(
-        "RMSE in percent of the range at that load, {LEVELS} levels. *Shift* is the default law, *weights*\n\
-         is `--load-law weights`. *Neighbours* is the rival without a model: the branches of the two\n\
-         neighbouring loads, averaged at each temperature. *Itself* is a fit to the load that was left out.\n\
-         The lowest and the highest load are not predicted: a model refuses loads outside its range.\n\n\
-         The beam in bending is the exception: its axis hardly moves with the load, and averaging is\n\
-         better. Two loads are left there, and two cannot show which law holds.\n"
-    );
-    println!("| recordings | left out | shift | weights | neighbours | itself |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: |");
-    let stress = |name: &str, output: &str, all: &[u32]| -> Result<Vec<Recording>> {
-        let columns = Columns {
-            load: Some("stress_MPa"),
-            ..Columns::new("temperature_C", output)
-        };
-        let file = |load: &u32| read(folder, &format!("sma_{name}_{load}MPa.csv"), columns);
-        all.iter().map(file).collect()
-    };
-    let bend = Columns {
-        load: Some("load_N"),
-        ..Columns::new("temperature_C", "extension_mm")
-    };
-    let sets = [
-        ("flexinol", stress("flexinol", "strain", &[50, 150, 200])?),
-        ("NiTiCo", stress("nitico_walgren", "strain", &[7, 50, 200])?),
-        (
-            "NiTiHf",
-            stress("nitihf_bigelow", "strain_percent", &[7, 50, 100, 200, 400])?,
-        ),
-        (
-            "bending",
-            cycles(&read(folder, "sma_bend_3load.csv", bend)?),
-        ),
-    ];
-    for (name, recordings) in sets {
-        for left in 1..recordings.len() - 1 {
-            let mut others = recordings.clone();
-            let unseen = others.remove(left);
-            let by = |law| -> Result<f64> {
-                let model = Fit::from(options(LEVELS)).load_law(law).run(&others)?;
-                error(&model, &unseen, Start::Off)
-            };
-            let mut alone = unseen.clone();
-            alone.load = None;
-            let itself = Fit::from(options(LEVELS)).run(&alone)?;
-            println!(
-                "| {name} | {:.0} | {:.1} | {:.1} | {:.1} | {:.1} |",
-                middle(&unseen),
-                by(LoadLaw::Shift)?,
-                by(LoadLaw::Weights)?,
-                neighbours(&recordings[left - 1], &unseen, &recordings[left + 1]),
-                error(&itself, &alone, Start::Off)?,
-            );
-        }
-    }
-    println!();
-    Ok(())
-}
-
-/// The median load.
-fn middle(recording: &Recording) -> f64 {
-    let mut load = recording.load.clone().unwrap_or_default();
-    load.sort_by(f64::total_cmp);
-    load[load.len() / 2]
-}
-
-/// One recording for each stretch of at least 500 samples at about the same load.
-fn cycles(recording: &Recording) -> Vec<Recording> {
-    let load = recording.load.clone().unwrap_or_default();
-    let mut found: Vec<std::ops::Range<usize>> = Vec::new();
-    let mut begin = 0;
-    for n in 1..=load.len() {
-        let jumps = n < load.len() && (load[n] - load[begin]).abs() > 150.0;
-        if n == load.len() || jumps {
-            if n - begin > 500 {
-                found.push(begin..n);
-            }
-            begin = n;
-        }
-    }
-    let part = |range: std::ops::Range<usize>| Recording {
-        time: None,
-        input: recording.input[range.clone()].to_vec(),
-        output: recording.output[range.clone()].to_vec(),
-        load: Some(load[range].to_vec()),
-        ..recording.clone()
-    };
-    let mut parts: Vec<Recording> = found.into_iter().map(part).collect();
-    parts.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
-    parts
-}
-
-/// The error of the mean of two neighbours' branches, weighted by the distance of the loads.
-fn neighbours(below: &Recording, unseen: &Recording, above: &Recording) -> f64 {
-    let share = (middle(unseen) - middle(below)) / (middle(above) - middle(below));
-    let rising = |recording: &Recording| {
-        let hottest = extreme(&recording.input, 1.0);
-        let coldest = extreme(&recording.input, -1.0);
-        (
-            coldest.min(hottest),
-            coldest.max(hottest),
-            hottest > coldest,
-        )
-    };
-    // Each recording is one loop: on the way between its extremes it moves one way, else the other.
-    let branch = |recording: &Recording, n: usize| {
-        let (from, to, heats) = rising(recording);
-        (from..to).contains(&n) == heats
-    };
-    let at = |recording: &Recording, heating: bool, t: f64| {
-        let own = (0..recording.len()).filter(|n| branch(recording, *n) == heating);
-        let mut points: Vec<(f64, f64)> = own
-            .map(|n| (recording.input[n], recording.output[n]))
-            .collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let k = points.partition_point(|point| point.0 <= t);
-        match (k.checked_sub(1).map(|k| points[k]), points.get(k)) {
-            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0),
-            (Some(only), None) => only.1,
-            (None, Some(only)) => only.1,
-            (None, None) => f64::NAN,
-        }
-    };
-    let (mut squares, mut low, mut high) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
-    for n in 0..unseen.len() {
-        let (t, heating) = (unseen.input[n], branch(unseen, n));
-        let guess = (1.0 - share) * at(below, heating, t) + share * at(above, heating, t);
-        squares += (guess - unseen.output[n]).powi(2);
-        (low, high) = (low.min(unseen.output[n]), high.max(unseen.output[n]));
-    }
-    100.0 * (squares / unseen.len() as f64).sqrt() / (high - low)
-}
-
-fn extreme(values: &[f64], sign: f64) -> usize {
-    let by = |a: &usize, b: &usize| (sign * values[*a]).total_cmp(&(sign * values[*b]));
-    (0..values.len()).max_by(by).unwrap_or(0)
 }
 
 /// Sharp loops with equal and with chosen distances of the levels.

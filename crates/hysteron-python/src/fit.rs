@@ -54,10 +54,12 @@ use pyo3::types::{PyDict, PyString};
 ///     Direction of the output; None for the one that fits better.
 /// offset : float, optional
 ///     Output with every operator off; by default identified.
-/// load_law : {'shift', 'weights'}
+/// load_law : {'auto', 'shift', 'weights'}
 ///     What a load changes, where the recordings have one. 'shift': it shifts the axis of the
 ///     operators, as stress shifts the temperatures of a shape-memory alloy, and weights and offset
-///     follow with `load_degree`. 'weights': weights and offset only.
+///     follow with `load_degree`. 'weights': weights and offset only. 'auto': the one that predicts
+///     loads left out best, of these and a registration, which moves the thresholds of rising and of
+///     falling input each along a curve; that one, where there is no load to leave out.
 /// load_degree : int or 'auto'
 ///     Order of the weights as a function of the load, 0 to 5. 'auto': the one that predicts loads
 ///     left out, of three or more, and otherwise 1.
@@ -125,7 +127,7 @@ use pyo3::types::{PyDict, PyString};
 #[pyo3(signature = (
     recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None,
     load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', creep='off', lag='off', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -378,7 +380,11 @@ const OPTIONS: [&str; 10] = [
 /// The options of the stages around the operators, which only `fit` has.
 const STAGES: [&str; 6] = ["load_law", "robust", "spacing", "creep", "lag", "curve"];
 
-const LAWS: [(&str, LoadLaw); 2] = [("shift", LoadLaw::Shift), ("weights", LoadLaw::Weights)];
+const LAWS: [(&str, LoadLaw); 3] = [
+    ("auto", LoadLaw::Auto),
+    ("shift", LoadLaw::Shift),
+    ("weights", LoadLaw::Weights),
+];
 
 const SPACINGS: [(&str, Spacing); 2] = [("uniform", Spacing::Uniform), ("auto", Spacing::Auto)];
 

@@ -89,8 +89,8 @@ pub use inspect::{
 pub use model::{
     Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Excitation, FirstOrder,
     FitSummary, FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model,
-    OperatorState, Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth,
-    Solver, StageConstants, Start, State, Surroundings, Validation, Wanted,
+    OperatorState, Operators, Plane, Policy, Registration, RivalScore, Sample, Score, SeenFile,
+    Sign, Smooth, Solver, StageConstants, Start, State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, Doubt, Judged, LowPass, Preparation, PrepareOptions, RateDependence, Repairs,

@@ -65,7 +65,7 @@ pub(crate) struct FitHow {
     #[arg(long, value_name = "COL")]
     pub(crate) load: Option<String>,
     /// What the load changes
-    #[arg(long, value_enum, requires = "load", default_value = "shift")]
+    #[arg(long, value_enum, requires = "load", default_value = "auto")]
     pub(crate) load_law: LoadLaw,
     /// Order of weights and offset in the load, 0 to 5; `auto` chooses it by loads left out
     #[arg(

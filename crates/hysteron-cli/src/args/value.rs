@@ -104,6 +104,8 @@ pub(crate) enum Start {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum LoadLaw {
+    /// A registration, or one of the others: what predicts loads left out best
+    Auto,
     /// It shifts the axis of the operators, and weights and offset follow it with a low order
     Shift,
     /// Weights and offset only

@@ -125,10 +125,41 @@ fn load_line(model: &Model) -> Option<String> {
         (false, _) => "changes stroke and offset".into(),
         (true, order) => format!("changes the weights with order {order}"),
     };
+    let registered = match model.registration().is_none() {
+        true => "",
+        false => ", moves where rising and falling input pass each threshold",
+    };
     let name = &load.quantity.name;
+    let left_out = loads_left_out(model, &weight).unwrap_or_default();
     Some(format!(
-        "{name} from {low} to {high}: it {slope}{scaled}, and {weights}"
+        "{name} from {low} to {high}: it {slope}{scaled}{registered}, and {weights}{left_out}"
     ))
+}
+
+/// The error on loads that were left out, and the loads that had no say.
+fn loads_left_out(model: &Model, unit: &str) -> Option<String> {
+    let found = model.fit.as_ref()?.other.get("load")?;
+    let error = match found["left_out_percent"].as_f64() {
+        Some(error) => format!("\nloads left out: predicted to {error:.2} % of their range"),
+        None => {
+            "\nloads left out: none is between two others, so nothing shows how well others are \
+                 predicted"
+                .into()
+        }
+    };
+    let silent = found["silent"].as_array()?.iter();
+    let silent: Vec<String> = silent
+        .filter_map(serde_json::Value::as_f64)
+        .map(text::number)
+        .collect();
+    let silent = match silent.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; hardly any stroke at {} {unit}: no say",
+            silent.join(", ")
+        ),
+    };
+    Some(error + &silent)
 }
 
 /// The output curve; said where it was asked for.

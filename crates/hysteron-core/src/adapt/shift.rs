@@ -21,6 +21,7 @@ use crate::scalar::Real;
 use crate::solution::Solution;
 use crate::stages::{Load, Loaded, Rates, Sample, StageState, Stages, Wanted, factors};
 use crate::state::State;
+use crate::target::Direction;
 
 /// A slope below the mean one divided by this is flat. It teaches nothing: the errors of a model
 /// over a flat branch are not those of its shift.
@@ -382,7 +383,14 @@ impl<T: Real> ShiftEstimator<T> {
         let next = at_shift(load, told, self.shift - beyond + small)?;
         let over = |a: T, b: T| (b - a) / small;
         let moves = over(inside.scale, next.scale) * memory.temperature() - T::ONE;
-        let along = model.slope(state) * stages.axis.slope(model.plane(), state.input());
+        let direction = match state.is_rising() {
+            true => Direction::Rising,
+            false => Direction::Falling,
+        };
+        let seen = stages
+            .axis
+            .slope(model.plane(), loaded, direction, state.input());
+        let along = model.slope(state) * seen;
         let along = loaded.gain * along;
         Ok(Sensitivity {
             loaded,

@@ -1,9 +1,13 @@
-//! The load and the spacing: what stands between the temperature and the operators' uniform grid.
+//! Load, registration and spacing: what stands between the temperature and the operators' uniform
+//! grid.
 
 use crate::error::Error;
 use crate::plane::Plane;
 use crate::scalar::Real;
 use crate::stages::constant::{Constant, Constants, Declared, Range, Unit};
+use crate::stages::loaded::Loaded;
+use crate::stages::registration::Registration;
+use crate::target::Direction;
 
 /// What a load `σ` does: curves over the load, piecewise linear between the loads `loads`.
 ///
@@ -24,19 +28,6 @@ pub struct Load<'a, T> {
     pub gains: &'a [T],
     /// The offset `o`, in the unit of the output.
     pub offsets: &'a [T],
-}
-
-/// The values of all curves at one load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loaded<T> {
-    /// The scale `a(σ)`.
-    pub scale: T,
-    /// The shift `s(σ)`.
-    pub shift: T,
-    /// The gain `g(σ)`.
-    pub gain: T,
-    /// The offset `o(σ)`.
-    pub offset: T,
 }
 
 impl<T: Real> Load<'_, T> {
@@ -63,12 +54,7 @@ impl<T: Real> Load<'_, T> {
     /// [`Error::Load`] where a load is needed and `load` is `None` or not finite.
     pub fn at(&self, load: Option<T>) -> Result<Loaded<T>, Error> {
         let (Some(&first), Some(&last)) = (self.loads.first(), self.loads.last()) else {
-            return Ok(Loaded {
-                scale: T::ONE,
-                shift: T::ZERO,
-                gain: T::ONE,
-                offset: T::ZERO,
-            });
+            return Ok(Loaded::NONE);
         };
         let load = load.filter(|load| load.is_finite()).ok_or(Error::Load)?;
         let load = load.clamp(first, last);
@@ -76,11 +62,18 @@ impl<T: Real> Load<'_, T> {
             [] => none,
             values => between(self.loads, |k| values[k], load),
         };
+        let row = self.loads.partition_point(|known| *known <= load).max(1) - 1;
+        let part = match self.loads.get(row + 1) {
+            Some(next) => (load - self.loads[row]) / (*next - self.loads[row]),
+            None => T::ZERO,
+        };
         Ok(Loaded {
             scale: of(self.scales, T::ONE),
             shift: of(self.shifts, T::ZERO),
             gain: of(self.gains, T::ONE),
             offset: of(self.offsets, T::ZERO),
+            row,
+            part,
         })
     }
 
@@ -124,55 +117,102 @@ impl<T: Real> Load<'_, T> {
 }
 
 /// From the temperature `T` (or voltage, or current) to the input `x` of the operators:
-/// `x = W(a(σ) · T − s(σ))`.
+/// `x = W(R(a(σ) · T − s(σ)))`.
 ///
-/// `W` is piecewise linear. It takes corner `k` of `spacing` to level `k` of the plane, for
-/// `k = 0…K` (level 0 is the bottom of the plane). Levels are then close together where the output
-/// moves.
+/// `R` is the [`Registration`], which may differ between rising and falling input. `W` is piecewise
+/// linear. It takes corner `k` of `spacing` to level `k` of the plane, for `k = 0…K` (level 0 is the
+/// bottom of the plane). Levels are then close together where the output moves.
 ///
 /// ```
-/// use hysteron_core::{Axis, Load, Plane};
+/// use hysteron_core::{Axis, Direction, Loaded, Plane};
 /// let plane = Plane::new(1.0, 2.0, 2)?; // its bottom is 0
-/// let axis = Axis { load: Load::NONE, spacing: &[20.0, 28.0, 30.0] };
-/// let unloaded = axis.load.at(None)?;
-/// assert_eq!(axis.forward(&plane, unloaded, 28.0), 1.0);
-/// assert_eq!(axis.backward(&plane, unloaded, 1.5), 29.0);
+/// let axis = Axis { spacing: &[20.0, 28.0, 30.0], ..Axis::PLAIN };
+/// assert_eq!(axis.forward(&plane, Loaded::NONE, Direction::Rising, 28.0), 1.0);
+/// assert_eq!(axis.backward(&plane, Loaded::NONE, Direction::Rising, 1.5), 29.0);
 /// # Ok::<(), hysteron_core::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis<'a, T> {
     /// What the load does.
     pub load: Load<'a, T>,
+    /// At which temperature each threshold is passed, on the way up and on the way down.
+    pub registration: Registration<'a, T>,
     /// The `K + 1` corners of the grid, ascending; empty for equal spacing.
     pub spacing: &'a [T],
 }
 
 impl<T: Real> Axis<'_, T> {
-    /// No load and equal spacing: `x = T`.
+    /// No load, no registration and equal spacing: `x = T`.
     pub const PLAIN: Self = Axis {
         load: Load::NONE,
+        registration: Registration::NONE,
         spacing: &[],
     };
 
-    /// The input of the operators at a `temperature`.
+    /// The input of the operators to which a `temperature` leads them from below, or from above.
     #[must_use]
-    pub fn forward(&self, plane: &Plane<T>, loaded: Loaded<T>, temperature: T) -> T {
+    pub fn forward(
+        &self,
+        plane: &Plane<T>,
+        loaded: Loaded<T>,
+        direction: Direction,
+        temperature: T,
+    ) -> T {
         let effective = loaded.scale * temperature - loaded.shift;
+        let effective = match self.registration.at(loaded, direction) {
+            None => effective,
+            Some(curve) => curve.forward(effective),
+        };
         match self.spacing {
             [] => effective,
             corners => between(corners, |k| plane.level(k), effective),
         }
     }
 
-    /// The slope of the operators' input over `a T − s`, at an input of the operators.
-    pub(crate) fn slope(&self, plane: &Plane<T>, input: T) -> T {
-        match self.spacing {
-            [] => T::ONE,
+    /// The input of the operators at a `temperature`, where it was `held` before. It stays where the
+    /// temperature is on the way from one curve of the [`Registration`] to the other.
+    ///
+    /// ```
+    /// use hysteron_core::{Axis, Loaded, Plane, Registration};
+    /// let plane = Plane::new(1.0, 2.0, 2)?;
+    /// let registration = Registration { knots: &[0.0, 2.0], rising: &[5.0, 7.0], falling: &[1.0, 3.0] };
+    /// let axis = Axis { registration, ..Axis::PLAIN };
+    /// let after = |held, temperature| axis.seen(&plane, Loaded::NONE, held, temperature);
+    /// assert_eq!(after(0.0, 6.0), 1.0); // it rises
+    /// assert_eq!(after(1.0, 4.0), 1.0); // it turns, and stays
+    /// assert_eq!(after(1.0, 1.5), 0.5); // it falls
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn seen(&self, plane: &Plane<T>, loaded: Loaded<T>, held: T, temperature: T) -> T {
+        let least = self.forward(plane, loaded, Direction::Rising, temperature);
+        if self.registration.falling.is_empty() {
+            return least;
+        }
+        let most = self.forward(plane, loaded, Direction::Falling, temperature);
+        least.max(held.min(most))
+    }
+
+    /// The slope of the operators' input over `a T − s` in a direction, at an input of the operators.
+    pub(crate) fn slope(
+        &self,
+        plane: &Plane<T>,
+        loaded: Loaded<T>,
+        direction: Direction,
+        input: T,
+    ) -> T {
+        let (position, spaced) = match self.spacing {
+            [] => (input, T::ONE),
             corners => {
                 let k = plane.normalise(input).floor_index();
                 let k = k.min(corners.len() - 2);
-                plane.step() / (corners[k + 1] - corners[k])
+                let slope = plane.step() / (corners[k + 1] - corners[k]);
+                (inverse_between(corners, plane, input), slope)
             }
+        };
+        match self.registration.at(loaded, direction) {
+            None => spaced,
+            Some(curve) => spaced * curve.slope_at(position),
         }
     }
 
@@ -184,14 +224,49 @@ impl<T: Real> Axis<'_, T> {
         }
     }
 
-    /// The temperature at an input of the operators. The inverse of [`Axis::forward`].
+    /// The temperature that leads the operators to an input, from below or from above. The inverse of
+    /// [`Axis::forward`].
     #[must_use]
-    pub fn backward(&self, plane: &Plane<T>, loaded: Loaded<T>, input: T) -> T {
-        let effective = match self.spacing {
+    pub fn backward(
+        &self,
+        plane: &Plane<T>,
+        loaded: Loaded<T>,
+        direction: Direction,
+        input: T,
+    ) -> T {
+        let position = match self.spacing {
             [] => input,
             corners => inverse_between(corners, plane, input),
         };
+        let effective = match self.registration.at(loaded, direction) {
+            None => position,
+            Some(curve) => curve.backward(position),
+        };
         (effective + loaded.shift) / loaded.scale
+    }
+
+    /// The temperature that leads the operators from the input `held` to another one. Where that is
+    /// the same, every temperature between the two curves does it: the last one on the way of a
+    /// `heading`, else the one nearest to `now`.
+    pub(crate) fn towards(
+        &self,
+        plane: &Plane<T>,
+        loaded: Loaded<T>,
+        (held, now): (T, T),
+        heading: Option<Direction>,
+        input: T,
+    ) -> T {
+        let by = |direction| self.backward(plane, loaded, direction, input);
+        if self.registration.falling.is_empty() || input > held {
+            return by(Direction::Rising);
+        }
+        let lowest = by(Direction::Falling);
+        match heading {
+            _ if input < held => lowest,
+            Some(Direction::Falling) => lowest,
+            Some(Direction::Rising) => by(Direction::Rising),
+            None => now.clamp(lowest, by(Direction::Rising).max(lowest)),
+        }
     }
 
     /// How far `x` may be from the exact one by rounding, on the way there and back. The temperature
@@ -205,6 +280,8 @@ impl<T: Real> Axis<'_, T> {
             corners => corners.windows(2).fold(T::ZERO, widest),
         };
         let ends = magnitude(plane.max()) + magnitude(plane.bottom());
+        let slope = slope * self.registration.steepest();
+        let effective = effective + self.registration.size();
         T::from_index(8) * T::EPSILON * (effective * slope + ends)
     }
 
@@ -267,6 +344,7 @@ impl<'a, T: Real> Constants<'a, T> for Axis<'a, T> {
                 },
             ],
         },
+        <Registration<'_, T> as Constants<T>>::DECLARED[0],
         Declared {
             name: "spacing",
             about: "places the levels where the output moves",
@@ -287,7 +365,10 @@ impl<'a, T: Real> Constants<'a, T> for Axis<'a, T> {
             gains,
             offsets,
         } = self.load;
-        [loads, shifts, scales, gains, offsets, self.spacing].into_iter()
+        let of_load = [loads, shifts, scales, gains, offsets].into_iter();
+        of_load
+            .chain(self.registration.lists())
+            .chain([self.spacing])
     }
 
     fn of_lists(mut next: impl FnMut() -> &'a [T]) -> Option<Self> {
@@ -298,8 +379,11 @@ impl<'a, T: Real> Constants<'a, T> for Axis<'a, T> {
             gains: next(),
             offsets: next(),
         };
-        let spacing = next();
-        Some(Self { load, spacing })
+        Some(Self {
+            load,
+            registration: Registration::of_lists(&mut next)?,
+            spacing: next(),
+        })
     }
 
     fn fits(&self) -> Result<(), &'static str> {
@@ -317,7 +401,7 @@ impl<'a, T: Real> Constants<'a, T> for Axis<'a, T> {
         ];
         let fits = |curve: &[T]| curve.is_empty() || curve.len() == load.loads.len();
         match curves.into_iter().find(|(_, curve)| !fits(curve)) {
-            None => Ok(()),
+            None => self.registration.fits_loads(load.loads.len()),
             Some((name, _)) => Err(name),
         }
     }

@@ -6,17 +6,18 @@ use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::{Model, Output};
 use crate::scalar::Real;
-use crate::stages::axis::{Axis, Loaded};
+use crate::stages::axis::Axis;
 use crate::stages::behind::{self, Behind};
 use crate::stages::body::Body;
 use crate::stages::constant::{Constant, Constants, Declared, Range};
+use crate::stages::loaded::Loaded;
 use crate::stages::state::{Rates, Sample, StageState};
 use crate::state::State;
 
 /// The constants of all stages around the operators of a [`Model`]. Each stage can be left out.
 ///
 /// ```text
-/// T = body(drive)    x = W(a(σ) T − s(σ))    h = operators(x)    y = offset + o(σ) + sign · behind(g(σ) h)
+/// T = body(drive)    x = W(R(a(σ) T − s(σ)))    h = operators(x)    y = offset + o(σ) + sign · behind(g(σ) h)
 /// ```
 ///
 /// ```
@@ -37,7 +38,7 @@ use crate::state::State;
 pub struct Stages<'a, T> {
     /// From the drive to the temperature; `None` where the input is the temperature itself.
     pub body: Option<Body<T>>,
-    /// Load and spacing.
+    /// Load, registration and spacing.
     pub axis: Axis<'a, T>,
     /// The stages behind the operators.
     pub behind: Behind<'a, T>,
@@ -306,7 +307,9 @@ impl<T: Real> Stages<'_, T> {
         if !(input.is_finite() && temperature.is_finite()) {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        let seen = self.axis.forward(model.plane(), loaded, temperature);
+        let seen = self
+            .axis
+            .seen(model.plane(), loaded, state.input(), temperature);
         let step = model.step(state, seen)?;
         let h = loaded.gain * step.output;
         let factors = factors(memory, rates);

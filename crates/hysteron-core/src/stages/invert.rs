@@ -7,9 +7,9 @@ use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::scalar::Real;
 use crate::solution::{Solution, Status};
-use crate::stages::axis::Loaded;
 use crate::stages::chain::{Stages, factors};
 use crate::stages::constant::thousandth;
+use crate::stages::loaded::Loaded;
 use crate::stages::state::{Rates, StageState};
 use crate::state::State;
 use crate::target::{Direction, Target};
@@ -148,8 +148,16 @@ impl<T: Real> Stages<'_, T> {
                 status: Status::Limited,
             },
         };
+        // An input beyond the plane is given as its nearest end: nothing moves there either. A relay
+        // switches at that end.
+        let held = match model.operator() {
+            Operator::Relay => state.input(),
+            _ => state.input().clamp(plane.bottom(), plane.max()),
+        };
+        let held = (held, memory.temperature);
+        let heading = aim.heading;
         let place = |aim: T| {
-            let temperature = self.axis.backward(plane, loaded, aim);
+            let temperature = self.axis.towards(plane, loaded, held, heading, aim);
             let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
             let input = self.drive(memory, rates, wanted, temperature);
             (input, self.size(temperature, input))
@@ -165,7 +173,7 @@ impl<T: Real> Stages<'_, T> {
             let mut aim = solution.input;
             for _ in 0..4 {
                 let temperature = self.heated(memory, rates, input);
-                let seen = self.axis.forward(plane, loaded, temperature);
+                let seen = self.axis.seen(plane, loaded, held.0, temperature);
                 if seen == solution.input || (seen > solution.input) == rising {
                     break;
                 }

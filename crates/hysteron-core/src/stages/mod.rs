@@ -1,11 +1,12 @@
 //! The stages before and after the operators, from the drive of an actuator to its output.
 //!
 //! ```text
-//! drive ─▶ body ─▶ temperature ─▶ axis (load, spacing) ─▶ operators ─▶ behind ─▶ output
+//! drive ─▶ body ─▶ temperature ─▶ axis (load, registration, spacing) ─▶ operators ─▶ behind ─▶ output
 //! ```
 //!
 //! - [`Body`]: first-order heating and cooling, from the drive to the temperature.
 //! - [`Axis`]: the load shifts the temperature axis; the spacing places the levels.
+//! - [`Registration`]: at which temperature each threshold is passed, up and down.
 //! - [`Load`]: what the load does to axis, stroke and offset.
 //! - [`Parts`]: weights that depend on the load.
 //! - [`Behind`]: the stages behind the operators, a file for each.
@@ -23,12 +24,14 @@ mod creep;
 mod curve;
 mod invert;
 mod lag;
+mod loaded;
 mod mix;
 mod parts;
+mod registration;
 mod stage;
 mod state;
 
-pub use axis::{Axis, Load, Loaded};
+pub use axis::{Axis, Load};
 pub use behind::Behind;
 pub use body::{Body, Decay};
 pub use chain::Stages;
@@ -38,6 +41,8 @@ pub use creep::{Creep, MAX_CREEP};
 pub use curve::Curve;
 pub use invert::Wanted;
 pub use lag::Lag;
+pub use loaded::Loaded;
 pub use mix::mix;
 pub use parts::{MAX_PARTS, Parts, Placed, bernstein};
+pub use registration::Registration;
 pub use state::{RATE_NUMBERS, Rates, STATE_NUMBERS, Sample, StageState};

@@ -3,7 +3,7 @@
 use crate::common::stages::Constants;
 use crate::common::{OPERATORS, build, inputs, levels, plane, rng, weights};
 use hysteron_core::{
-    Body, Error, Operator, Plane, Sample, StageState, Stages, Status, Target, Wanted,
+    Body, Direction, Error, Operator, Plane, Sample, StageState, Stages, Status, Target, Wanted,
 };
 use rand::RngExt;
 
@@ -34,7 +34,7 @@ fn a_missed_target_is_beyond_the_outputs_at_rest_or_limited() {
             true => (plane.max() + plane.step(), on),
             false => (plane.bottom() - plane.step(), off),
         };
-        let end = stages.axis.backward(&plane, loaded, end);
+        let end = stages.axis.backward(&plane, loaded, Direction::Rising, end);
         let input = owned.body().map_or(end, |body| body.hold(end));
         let (mut state, mut memory) = (state, StageState::default());
         let sample = Sample {

@@ -10,7 +10,7 @@ use rand::rngs::StdRng;
 fn drive(rng: &mut StdRng, owned: &Owned<f64>, plane: &Plane<f64>, load: Option<f64>) -> f64 {
     let axis = owned.stages().axis;
     let input = plane.bottom() + rng.random::<f64>() * (plane.max() - plane.bottom());
-    let temperature = axis.backward(plane, axis.load.at(load).unwrap(), input);
+    let temperature = axis.backward(plane, axis.load.at(load).unwrap(), Direction::Rising, input);
     owned
         .body()
         .map_or(temperature, |body| body.hold(temperature))
@@ -27,10 +27,17 @@ fn far(rng: &mut StdRng, constants: &mut Constants, plane: &Plane<f64>) {
         if which == n || which == 4 { sign } else { 0.0 }
     };
     let (spacing, shift, ambient, offset) = (away(0), away(1), away(2), away(3));
-    constants
-        .spacing
-        .iter_mut()
-        .for_each(|corner| *corner += spacing);
+    let Constants {
+        spacing: corners,
+        knots,
+        up,
+        down,
+        ..
+    } = constants;
+    if !corners.is_empty() {
+        let axis = [corners, knots, up, down].into_iter().flatten();
+        axis.for_each(|x| *x += spacing);
+    }
     if constants.loads.is_empty() && !constants.spacing.is_empty() {
         constants
             .body
@@ -73,6 +80,9 @@ fn outputs_of_the_chain_are_met_by_its_inverse() {
                 &mut constants.scales,
                 &mut constants.gains,
                 &mut constants.offsets,
+                &mut constants.knots,
+                &mut constants.up,
+                &mut constants.down,
             ] {
                 list.clear();
             }
@@ -199,6 +209,9 @@ impl Units {
             scales: all(&constants.scales, self.effective / self.temperature),
             gains: all(&constants.gains, self.output / self.sum),
             offsets: all(&constants.offsets, self.output),
+            knots: all(&constants.knots, self.effective),
+            up: all(&constants.up, self.effective),
+            down: all(&constants.down, self.effective),
             spacing: all(&constants.spacing, self.effective),
             sums: all(&constants.sums, self.output),
             outputs: all(&constants.outputs, self.output),

@@ -267,6 +267,7 @@ impl Parts {
             axis: Axis {
                 load: if loaded { load } else { Load::NONE },
                 spacing: &self.spacing,
+                ..Axis::PLAIN
             },
             behind: Behind {
                 creep: if self.creep { creep } else { Creep::NONE },
@@ -412,7 +413,10 @@ fn a_load_is_told_by_its_shift_and_brings_gain_and_offset() {
             gains: &[1.0, 1.2, 1.3],
             offsets: &[0.0, 0.02 * model.total(), 0.05 * model.total()],
         };
-        let axis = Axis { load, spacing: &[] };
+        let axis = Axis {
+            load,
+            ..Axis::PLAIN
+        };
         let stages = Stages {
             axis,
             ..Stages::NONE

@@ -7,8 +7,8 @@ use common::stages::{Constants, Owned};
 use common::{OPERATORS, build, build_f32, inputs, levels, plane, rng, weights};
 use hysteron_core::{
     Axis, Body, Constant, Definition, Direction, Error, Load, MAX_CREEP, Model, Operator, Plane,
-    Range, Real, Sample, StageState, Stages, Status, Target, Turn, Wanted, mix, table_len,
-    turn_capacity,
+    Range, Real, Registration, Sample, StageState, Stages, Status, Target, Turn, Wanted, mix,
+    table_len, turn_capacity,
 };
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -39,6 +39,7 @@ fn the_chain_is_its_formulas() {
         let mut plain = Definition::new(plane, operator, &weights, &mut gamma).unwrap();
         let (mut state, mut memory) = (case.1.clone(), StageState::default());
         let (mut temperature, mut crept, mut lagged) = (None, Vec::new(), None);
+        let mut x = plane.bottom();
         let size: f64 = 10.0 + 2.0 * weights.iter().sum::<f64>();
         for input in inputs(&mut rng, &plane, 300) {
             let drive = constants
@@ -74,11 +75,17 @@ fn the_chain_is_its_formulas() {
                 ([one], _) => *one,
                 (values, _) => line(&constants.loads, values, load),
             };
-            let mut x = of(&constants.scales, 1.0) * t - of(&constants.shifts, 0.0);
-            if !constants.spacing.is_empty() {
-                let levels: Vec<f64> = (0..=k).map(|n| plane.level(n)).collect();
-                x = line(&constants.spacing, &levels, x);
-            }
+            let effective = of(&constants.scales, 1.0) * t - of(&constants.shifts, 0.0);
+            let [up, down] = [&constants.up, &constants.down].map(|rows| {
+                let rows = if rows.is_empty() { &constants.up } else { rows };
+                let mut x = registered(&constants, rows, load, effective);
+                if !constants.spacing.is_empty() {
+                    let levels: Vec<f64> = (0..=k).map(|n| plane.level(n)).collect();
+                    x = line(&constants.spacing, &levels, x);
+                }
+                x
+            });
+            x = f64::max(up, f64::min(x, down));
             let mut h = of(&constants.gains, 1.0) * plain.step(x).unwrap();
             if !constants.sums.is_empty() {
                 h = line(&constants.sums, &constants.outputs, h);
@@ -112,6 +119,29 @@ fn the_chain_is_its_formulas() {
                 found.output
             );
         }
+    }
+}
+
+/// The position on the axis at an effective temperature: between the knots linear, beyond them the
+/// axis itself.
+fn registered(constants: &Constants, rows: &[f64], load: f64, effective: f64) -> f64 {
+    let (count, loads) = (constants.knots.len(), &constants.loads);
+    if count == 0 {
+        return effective;
+    }
+    let at = |m: usize| match loads.len() {
+        0 | 1 => rows[m],
+        _ => {
+            let column: Vec<f64> = rows.iter().skip(m).step_by(count).copied().collect();
+            line(loads, &column, load)
+        }
+    };
+    let row: Vec<f64> = (0..count).map(at).collect();
+    let (first, last) = (row[0], row[count - 1]);
+    match effective {
+        t if t < first => constants.knots[0] + (t - first),
+        t if t > last => constants.knots[count - 1] + (t - last),
+        t => line(&row, &constants.knots, t),
     }
 }
 
@@ -354,7 +384,7 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
                 shifts: &[0.0, 0.5],
                 ..Load::NONE
             },
-            spacing: &[],
+            ..Axis::PLAIN
         },
         ..Stages::NONE
     };
@@ -480,6 +510,9 @@ fn whole() -> (Lists, Model<f64, [f64; table_len(2)]>) {
         "shifts" | "offsets" => vec![0.0, 0.5],
         "spacing" => vec![0.0, 1.0, 3.0],
         "lag" => vec![0.5],
+        // A row for each of the loads.
+        "rising" => vec![1.0, 2.0, 1.0, 3.0],
+        "falling" => vec![0.0, 2.0, 1.0, 2.0],
         _ => vec![1.0, 2.0],
     };
     let constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
@@ -574,7 +607,11 @@ fn lists_that_do_not_fit_each_other_are_refused_by_name() {
     }
     // A slope of 2 millions.
     refused("curve_outputs", &[0.0, 2e6], "curve_outputs");
-    let axis = stages.axis;
+    let registration = Registration::NONE;
+    let axis = Axis {
+        registration,
+        ..stages.axis
+    };
     let load = axis.load;
     // Corners need to be several rounding units apart, where they are far from zero too.
     let ulp = f64::EPSILON;

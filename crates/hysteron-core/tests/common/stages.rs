@@ -14,6 +14,9 @@ pub struct Constants {
     pub scales: Vec<f64>,
     pub gains: Vec<f64>,
     pub offsets: Vec<f64>,
+    pub knots: Vec<f64>,
+    pub up: Vec<f64>,
+    pub down: Vec<f64>,
     pub spacing: Vec<f64>,
     pub sums: Vec<f64>,
     pub outputs: Vec<f64>,
@@ -33,6 +36,30 @@ pub fn ascending(rng: &mut StdRng, count: usize, from: f64, span: f64) -> Vec<f6
         at
     };
     steps.iter().map(knot).collect()
+}
+
+/// Knots over an axis from `low` on, and rows of temperatures for rising and falling input: none, the
+/// same ones, or two that never cross.
+pub fn registration(rng: &mut StdRng, (low, span): (f64, f64), loads: usize) -> [Vec<f64>; 3] {
+    let kind = rng.random_range(0..4);
+    if kind < 2 {
+        return [const { Vec::new() }; 3];
+    }
+    let count = rng.random_range(2..7);
+    let (mut rising, mut falling) = (Vec::new(), Vec::new());
+    for _ in 0..loads.max(1) {
+        let [a, b] = [0, 1].map(|_| {
+            let from = low + span * rng.random_range(-0.3..0.2);
+            let width = span * rng.random_range(0.6..1.2);
+            ascending(rng, count, from, width)
+        });
+        rising.extend(a.iter().zip(&b).map(|(a, b)| f64::max(*a, *b)));
+        falling.extend(a.iter().zip(&b).map(|(a, b)| f64::min(*a, *b)));
+    }
+    if kind == 2 {
+        falling.clear();
+    }
+    [ascending(rng, count, low, span), rising, falling]
 }
 
 impl Constants {
@@ -67,21 +94,31 @@ impl Constants {
         let lag = numbers(1, 0.01, 1.0)[0];
         let (spaced, scaled, gained) = (rng.random(), rng.random(), rng.random());
         let corners = plane.levels() + 1;
+        let loads = ascending(rng, count, -3.0, 10.0);
+        let spacing = match spaced {
+            true => ascending(rng, corners, plane.bottom(), span),
+            false => Vec::new(),
+        };
+        let (sums, outputs) = (
+            ascending(rng, knots, -2.0, 12.0),
+            ascending(rng, knots, -1.0, 8.0),
+        );
+        let [knots, up, down] = registration(rng, (plane.bottom(), span), count);
         Self {
             body: rng
                 .random::<bool>()
                 .then(|| [plane.bottom(), span * body[1], body[2], body[3]]),
-            loads: ascending(rng, count, -3.0, 10.0),
+            loads,
             shifts,
             scales: if scaled { scales } else { Vec::new() },
             gains: if gained { gains } else { Vec::new() },
             offsets: if gained { offsets } else { Vec::new() },
-            spacing: match spaced {
-                true => ascending(rng, corners, plane.bottom(), span),
-                false => Vec::new(),
-            },
-            sums: ascending(rng, knots, -2.0, 12.0),
-            outputs: ascending(rng, knots, -1.0, 8.0),
+            knots,
+            up,
+            down,
+            spacing,
+            sums,
+            outputs,
             coefficients,
             taus,
             lag: if rng.random() { lag } else { 0.0 },
@@ -103,6 +140,9 @@ impl Constants {
             "scales" => &self.scales,
             "gains" => &self.gains,
             "offsets" => &self.offsets,
+            "knots" => &self.knots,
+            "rising" => &self.up,
+            "falling" => &self.down,
             "spacing" => &self.spacing,
             "curve_sums" => &self.sums,
             "curve_outputs" => &self.outputs,

@@ -131,6 +131,10 @@ impl Axis {
             .map(|pair| plane.step() / (pair[1] - pair[0]));
         let slope = gaps.fold(0.0, f64::max);
         let slope = if spacing.is_empty() { 1.0 } else { slope };
+        let registration = stages.axis.registration;
+        let slope = slope * registration.steepest();
+        let rows = registration.rising.iter().chain(registration.falling);
+        let corners = rows.fold(corners, |most, t| f64::max(most, t.abs()));
         let shift = load
             .shifts
             .iter()
@@ -150,7 +154,7 @@ impl Axis {
             (driven, magnitude([body.rest(low), body.rest(high)]))
         });
         Self {
-            size: (scale * (wanted + driven) + shift) * slope
+            size: (scale * (wanted + driven) + shift + registration.size()) * slope
                 + plane.bottom().abs()
                 + plane.max().abs(),
             heated: scale * heated.max(wanted) * slope,

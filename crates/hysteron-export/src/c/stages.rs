@@ -101,6 +101,7 @@ impl<T: Number> Staged<T> {
         let corners = core.axis.spacing.windows(2);
         let slopes = corners.map(|pair| step / (pair[1] - pair[0]));
         let steepest = slopes.reduce(Real::max).unwrap_or(T::ONE);
+        let steepest = steepest * core.axis.registration.steepest();
         (staged.gain, staged.size) = (gain, size);
         (staged.rates, staged.steepest) = (rates, steepest);
         Ok(Some(staged))

@@ -54,6 +54,25 @@ fn curves(rng: &mut StdRng, width: f64) -> (Value, (f64, f64)) {
     (all, range)
 }
 
+/// Knots of a registration, and a row for each load of temperatures on the way up and down.
+fn registration(
+    rng: &mut StdRng,
+    loads: usize,
+    (low, width): (f64, f64),
+) -> (Vec<f64>, [Vec<f64>; 2]) {
+    let count = rng.random_range(2..7);
+    let (mut rising, mut falling) = (Vec::new(), Vec::new());
+    for _ in 0..loads {
+        let [a, b] = [0, 1].map(|_| {
+            let from = low + width * rng.random_range(-0.3..0.2);
+            sorted(rng, count, from, from + width)
+        });
+        rising.extend(a.iter().zip(&b).map(|(a, b)| f64::max(*a, *b)));
+        falling.extend(a.iter().zip(&b).map(|(a, b)| f64::min(*a, *b)));
+    }
+    (sorted(rng, count, low, low + width), [rising, falling])
+}
+
 /// Weights and offset of the file are those in the middle of the parts.
 fn at_middle(file: &mut Value, parts: &[Value]) {
     let mut factors = vec![0.0; parts.len()];
@@ -127,6 +146,20 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
             "curve_sums": sorted(rng, knots, -1.0, 9.0),
             "curve_outputs": sorted(rng, knots, 2.0, 30.0),
         });
+    }
+    if coin(rng) {
+        let loads = file["load"]["curves"]["loads"]
+            .as_array()
+            .map_or(1, Vec::len);
+        let (knots, [rising, falling]) = registration(rng, loads, (low, width));
+        file["version"] = 3.into();
+        if file["stages"].is_null() {
+            file["stages"] = json!({});
+        }
+        (file["stages"]["knots"], file["stages"]["rising"]) = (knots.into(), rising.into());
+        if rng.random_bool(0.8) {
+            file["stages"]["falling"] = falling.into();
+        }
     }
     if coin(rng) {
         let mut state = plain.start();

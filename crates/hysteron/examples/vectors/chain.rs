@@ -36,6 +36,7 @@ struct Loaded {
     gain: f64,
     offset: f64,
     base: f64,
+    load: f64,
 }
 
 /// A model, and its operators alone: their output is `Σ μ γ`.
@@ -102,9 +103,13 @@ impl<'m> Chain<'m> {
             last = Some(temperature);
             temperatures.push(temperature);
         }
+        let mut held = f64::NEG_INFINITY;
         let seen = temperatures.iter().zip(samples);
         let seen: Vec<f64> = seen
-            .map(|(&temperature, sample)| self.seen(&self.loaded(sample.load), temperature))
+            .map(|(&temperature, sample)| {
+                held = self.seen(&self.loaded(sample.load), held, temperature);
+                held
+            })
             .collect();
         let sums = self
             .parts
@@ -166,12 +171,26 @@ impl<'m> Chain<'m> {
             // A lag in a step without length: the output cannot move.
             search.input()
         };
-        let temperature = root(|temperature| self.seen(&loaded, temperature), seen);
+        let last = self.memory.as_ref().map(|memory| memory.temperature);
+        let plane = self.model.plane();
+        let held = search.input().clamp(plane.bottom(), plane.max());
+        let by = |rising| root(|temperature| self.led(&loaded, rising, temperature), seen);
+        let temperature = if seen > held {
+            by(true)
+        } else if seen < held {
+            by(false)
+        } else {
+            // Every temperature between the two curves stays there.
+            match sign as i8 * aim.heading {
+                1 => by(true),
+                -1 => by(false),
+                _ => last.unwrap_or(0.0).max(by(false)).min(by(true)),
+            }
+        };
         let drive = self.drive(aim, temperature);
 
-        let last = self.memory.as_ref().map(|memory| memory.temperature);
         let temperature = self.heated(last, drive, dt);
-        search.travel(self.seen(&loaded, temperature))?;
+        search.travel(self.seen(&loaded, held, temperature))?;
         let (settled, crept) = self.settled(loaded.gain * search.output(), dt);
         self.memory = Some(Memory {
             temperature,
@@ -246,13 +265,56 @@ impl<'m> Chain<'m> {
             shift: of(|curves| &curves.shifts, 0.0),
             gain: of(|curves| &curves.gains, 1.0),
             offset: of(|curves| &curves.offsets, 0.0),
+            load,
             base: self.mixed(load, |part| self.parts[part].1),
         }
     }
 
-    /// What the operators see of a temperature.
-    fn seen(&self, loaded: &Loaded, temperature: f64) -> f64 {
+    /// What the operators see of a temperature, where they saw `held` before: a play between the two
+    /// curves of the registration.
+    fn seen(&self, loaded: &Loaded, held: f64, temperature: f64) -> f64 {
+        let [up, down] = [true, false].map(|rising| self.led(loaded, rising, temperature));
+        f64::max(up, f64::min(held, down))
+    }
+
+    /// The position behind one of the two curves, between the knots on a line and beyond them of slope
+    /// one.
+    fn registered(&self, load: f64, rising: bool, effective: f64) -> f64 {
+        let registration = self.model.registration();
+        let (knots, count) = (&registration.knots, registration.knots.len());
+        let rows = match rising || registration.falling.is_empty() {
+            true => &registration.rising,
+            false => &registration.falling,
+        };
+        let curves = self
+            .model
+            .load
+            .as_ref()
+            .and_then(|load| load.curves.as_ref());
+        let row: Vec<f64> = match curves {
+            None => rows.clone(),
+            Some(curves) => {
+                let loads = &curves.loads;
+                let load = load.clamp(loads[0], loads[loads.len() - 1]);
+                let at = |m: usize| {
+                    let column: Vec<f64> = rows.iter().skip(m).step_by(count).copied().collect();
+                    line(loads, &column, load)
+                };
+                (0..count).map(at).collect()
+            }
+        };
+        match effective {
+            _ if count == 0 => effective,
+            t if t < row[0] => knots[0] + (t - row[0]),
+            t if t > row[count - 1] => knots[count - 1] + (t - row[count - 1]),
+            t => line(&row, knots, t),
+        }
+    }
+
+    /// What the operators see of a temperature that leads them from below, or from above.
+    fn led(&self, loaded: &Loaded, rising: bool, temperature: f64) -> f64 {
         let effective = loaded.scale * temperature - loaded.shift;
+        let effective = self.registered(loaded.load, rising, effective);
         let corners = self.model.spacing();
         let plane = self.model.plane();
         let levels: Vec<f64> = (0..corners.len()).map(|k| plane.level(k)).collect();

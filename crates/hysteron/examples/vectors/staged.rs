@@ -21,6 +21,7 @@ enum Stage {
     Creep,
     Lag,
     Curve,
+    Registration,
     /// Weights and offset of the second order in the load.
     Weights,
 }
@@ -54,12 +55,16 @@ pub fn all() -> Result<Vec<(String, String)>> {
     both("creep-mkp-5", Mkp, &[Stage::Creep], line)?;
     both("lag-mkp-5", Mkp, &[Stage::Lag], line)?;
     both("curve-mkp-5", Mkp, &[Stage::Curve], line)?;
+    both("registration-mkp-5", Mkp, &[Stage::Registration], line)?;
     both("chain-mkp-5", Mkp, &EVERY, line)?;
     both("chain-kp-5", Kp, &EVERY, (-3.5, Negative))?;
     both("chain-relay-5", Relay, &EVERY, line)?;
     let curved = [&EVERY[..], &[Stage::Curve]].concat();
     both("chain-curve-mkp-5", Mkp, &curved, line)?;
     both("chain-curve-kp-5", Kp, &curved, (-3.5, Negative))?;
+    let registered = [&EVERY[..], &[Stage::Registration]].concat();
+    both("chain-registration-mkp-5", Mkp, &registered, line)?;
+    both("chain-registration-kp-5", Kp, &registered, (-3.5, Negative))?;
     both("weights-mkp-5", Mkp, &[Stage::Weights], line)?;
     let whole = [&EVERY[..], &[Stage::Weights]].concat();
     both("chain-weights-mkp-5", Mkp, &whole, line)?;
@@ -106,6 +111,25 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
                 let knots = [0.125, 0.375, 0.5, 1.25].map(|share| short(share * total));
                 let outputs = [0.0, 0.5, 0.625, 1.5].map(|share| short(share * total));
                 text["stages"] = json!({"curve_sums": knots, "curve_outputs": outputs});
+            }
+            Stage::Registration => {
+                text["version"] = 3.into();
+                // A row for each load of the curves.
+                let loads = if text["load"].is_null() { 1 } else { 3 };
+                let up = [
+                    [16.0, 38.0, 60.0, 80.0],
+                    [20.0, 40.0, 58.0, 84.0],
+                    [14.0, 36.0, 62.0, 82.0],
+                ];
+                let down = [
+                    [10.0, 24.0, 44.0, 70.0],
+                    [8.0, 28.0, 50.0, 72.0],
+                    [14.0, 30.0, 40.0, 66.0],
+                ];
+                text["stages"] = json!({
+                    "knots": [10.0, 30.0, 50.0, 74.0],
+                    "rising": up[..loads].concat(), "falling": down[..loads].concat(),
+                });
             }
             Stage::Weights => {
                 let offset = |part: usize| plain.offset() + [0.0, 1.5, -0.25][part];

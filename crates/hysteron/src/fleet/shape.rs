@@ -89,8 +89,13 @@ impl Shape {
 /// The inputs at the corners of the grid, in the middle of the loads.
 fn corners(model: &Model) -> Vec<f64> {
     let plane = model.plane();
-    if !model.spacing().is_empty() {
+    if !model.spacing().is_empty() && model.registration().is_none() {
         return model.spacing().to_vec();
+    }
+    if !model.registration().is_none() {
+        let ((low, high), count) = (model.active_range(), plane.levels());
+        let at = |n| low + (high - low) * n as f64 / count as f64;
+        return (0..=count).map(at).collect();
     }
     (0..=plane.levels()).map(|n| plane.level(n)).collect()
 }

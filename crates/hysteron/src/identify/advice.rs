@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::identify::choose::start::MANY_OPEN;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
-use crate::model::{Model, Outlier, Solver, Start};
+use crate::model::{Model, Outlier, Solver, Start, Surroundings};
 use crate::recording::{Quantity, Recording};
 use crate::remedy::{Remedy, Setting};
 use crate::series::lost::wrong;
@@ -187,11 +187,16 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     let (mut inputs, mut samples, mut against) = (0, 0, 0.0_f64);
     for recording in recordings {
         let seen = model.behind_body(recording)?;
-        inputs += seen
-            .input
-            .iter()
-            .filter(|t| plane.clipped(**t).is_some())
-            .count();
+        let positions = match &model.load {
+            // The load moves the axis under the plane.
+            Some(_) => {
+                let around = Surroundings::from_recording(model, recording);
+                model.seen(&recording.input, around)?
+            }
+            None => (&seen.input).into(),
+        };
+        let outside = positions.iter().filter(|x| plane.clipped(**x).is_some());
+        inputs += outside.count();
         samples += seen.len();
         // A load that changes moves the output by itself, so the test says nothing then.
         if model.load.is_none() {
@@ -203,7 +208,10 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         advice.push(Advice::Clipped {
             inputs,
             samples,
-            range: (plane.bottom(), plane.max()),
+            range: match model.load {
+                Some(_) => model.active_range(),
+                None => (plane.bottom(), plane.max()),
+            },
         });
     }
     let noisy = recordings.iter().find_map(false_reversals);

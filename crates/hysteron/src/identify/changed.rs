@@ -2,7 +2,7 @@
 
 use crate::model::Plane;
 use crate::recording::Recording;
-use hysteron_core::Axis;
+use hysteron_core::{Axis, Direction, Loaded};
 
 /// The recordings with another input.
 pub(super) fn with_inputs(
@@ -22,13 +22,7 @@ pub(super) fn on_grid<'a>(spacing: &'a [f64], plane: &'a Plane) -> impl Fn(f64) 
         spacing,
         ..Axis::PLAIN
     };
-    let unloaded = hysteron_core::Loaded {
-        scale: 1.0,
-        shift: 0.0,
-        gain: 1.0,
-        offset: 0.0,
-    };
-    move |t| axis.forward(plane, unloaded, t)
+    move |t| axis.forward(plane, Loaded::NONE, Direction::Rising, t)
 }
 
 /// Keeps of each run of `stride` samples the first one and those with extreme inputs. Without the

@@ -62,8 +62,11 @@ impl From<Smooth> for Choice<Smooth> {
 /// What a load changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LoadLaw {
-    /// It shifts the axis of the operators, and weights and offset follow with a low order.
+    /// It moves the thresholds of rising and of falling input, each along a curve (a registration),
+    /// or as one of the others: what predicts loads left out best.
     #[default]
+    Auto,
+    /// It shifts the axis of the operators, and weights and offset follow with a low order.
     Shift,
     /// It changes weights and offset only.
     Weights,
@@ -94,7 +97,7 @@ pub enum Spacing {
 /// | `ridge` | 1e-6 | 0 to 1 | pulls weights that the data hardly move to zero |
 /// | `robust` | off; auto | | whether outliers are found and given no weight |
 /// | `start` | off; auto | off, on, rest, unknown | state of the operators before each recording |
-/// | `load_law` | shift | shift, weights | what a load changes, if there is one |
+/// | `load_law` | auto | auto, shift, weights | what a load changes, if there is one |
 /// | `load_degree` | auto | 0 to 5 | order of the weights in the load; auto: by loads left out |
 /// | `spacing` | uniform; auto | uniform, auto | where the levels are |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
@@ -198,7 +201,7 @@ impl FitOptions {
             robust: false,
             start: Start::Off,
             rest: None,
-            load_law: LoadLaw::Shift,
+            load_law: LoadLaw::Auto,
             load_curves: None,
             load_degree: None,
             spacing: Spacing::Uniform,

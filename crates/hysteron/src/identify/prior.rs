@@ -261,7 +261,7 @@ fn same_kind(a: &Model, b: &Model) -> bool {
 /// Whether the model has no stage besides the spacing of its levels.
 fn is_static(model: &Model) -> bool {
     let behind = model.stages().behind.there().any(|(_, there)| there);
-    !model.is_timed() && !behind && model.load.is_none()
+    !model.is_timed() && !behind && model.load.is_none() && model.registration().is_none()
 }
 
 /// Offset and weights for states from 0 to 1 and a rising output: see `Problem::load_parts`.

@@ -88,9 +88,10 @@ pub const FIT_OPTIONS: [FitOption; 18] = [
     },
     FitOption {
         name: "load_law",
-        default: "`shift`",
-        range: "`shift`, `weights`",
-        purpose: "what a load changes, if there is one",
+        default: "`auto`",
+        range: "`auto`, `shift`, `weights`",
+        purpose: "what a load changes, if there is one; `auto`: what predicts loads left out best, of \
+                  a registration of the loops, a shift of the axis and weights",
     },
     FitOption {
         name: "load_degree",
@@ -195,6 +196,7 @@ impl Fit<'_> {
             ("start", "on") => self.start(Start::On),
             ("start", "rest") => self.start(Start::Rest),
             ("start", "unknown") => self.start(Start::Unknown),
+            ("load_law", "auto") => self.load_law(LoadLaw::Auto),
             ("load_law", "shift") => self.load_law(LoadLaw::Shift),
             ("load_law", "weights") => self.load_law(LoadLaw::Weights),
             ("load_degree", "auto") => self.load_degree(Auto),

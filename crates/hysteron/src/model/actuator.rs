@@ -5,6 +5,7 @@ use crate::model::body::{FirstOrder, needs_time};
 use crate::model::constants::StageConstants;
 use crate::model::load::LoadDependence;
 use crate::model::operators::{FittedStart, Operators, Plane};
+use crate::model::registration::Registration;
 use crate::model::sign::Sign;
 use crate::model::summary::FitSummary;
 use crate::recording::{Quantity, Recording};
@@ -45,6 +46,8 @@ pub struct Model {
     /// The lowest and the highest drive that the actuator was recorded with. The inverse of a model
     /// with a thermal body stays between them, if it is given no other range.
     pub drive: Option<(f64, f64)>,
+    /// At which inputs rising and falling input pass each threshold.
+    pub(super) registration: Registration,
     /// The inputs at the corners of the grid; empty for equal distances.
     pub(super) spacing: Vec<f64>,
     /// The constants of the stages behind the operators.
@@ -65,6 +68,7 @@ impl From<Operators> for Model {
             load: None,
             thermal: None,
             drive: None,
+            registration: Registration::default(),
             spacing: Vec::new(),
             behind: StageConstants::default(),
             start: None,
@@ -109,6 +113,12 @@ impl Model {
         if !self.behind.is_none() {
             let what = "the model has a stage behind its operators, which this cannot have";
             return Err(Error::Fit(what.into()));
+        }
+        if !self.registration.is_none() {
+            let what = "the model has an axis for each direction of its input, which this cannot \
+                        have";
+            let remedy = Remedy::new("fit with {}", [Setting::word("load-law", "shift")]);
+            return Err(Error::Fit(what.into()).remedied(remedy));
         }
         if !self.spacing.is_empty() {
             let what = "the model's levels are not at equal distances, which this needs";

@@ -58,6 +58,7 @@ impl Model {
     /// The model with its levels moved by `shift`, for a model that depends on no load.
     fn moved(&self, shift: f64) -> Result<Self> {
         let mut model = self.clone();
+        model.registration = self.registration.moved(|x| x + shift);
         if self.spacing.is_empty() {
             let plane = self.plane();
             let plane = Plane::new(plane.min() + shift, plane.max() + shift, plane.levels())?;
@@ -112,6 +113,7 @@ impl Model {
         Ok(Self {
             operators,
             load: None,
+            registration: self.registration.at(loaded, moved),
             spacing: self.spacing.iter().map(|corner| moved(*corner)).collect(),
             start,
             ..self.clone()

@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::model::Plane;
 use crate::model::constants::{CreepTerm, StageConstants};
 use crate::model::load::{LoadDependence, LoadPart};
+use crate::model::registration::Registration;
 use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
 use crate::recording::{LARGEST, Quantity};
@@ -138,7 +139,13 @@ impl Model {
             let problem = "it is the range of the drive of a thermal body, and there is none";
             return Err(fault("drive", problem.into()));
         }
-        model.behind = behind(file.creep, file.lag, file.stages)?;
+        let listed = listed(file.creep, file.lag, file.stages)?;
+        model.registration = Registration::of_constants(&listed);
+        let behind = listed.stages().behind;
+        model.behind = StageConstants::from_stages(&Stages {
+            behind,
+            ..Stages::NONE
+        });
         model.spacing = file.spacing;
         model.check_stages().map_err(|error| {
             let field = match &error {
@@ -222,7 +229,8 @@ impl Model {
 
     /// The constants that version 2 has no entry for.
     fn others(&self) -> BTreeMap<String, Vec<f64>> {
-        let all = self.behind.iter();
+        let constants = self.constants();
+        let all = constants.iter();
         let others = all.filter(|(constant, numbers)| {
             !numbers.is_empty() && place(constant.name).starts_with(OTHERS)
         });
@@ -297,8 +305,8 @@ fn hint(stage: &str) -> String {
     }
 }
 
-/// The constants of the stages behind the operators.
-fn behind(
+/// The constants that stand in lists.
+fn listed(
     creep: Vec<CreepTerm>,
     lag: Option<f64>,
     others: BTreeMap<String, Vec<f64>>,

@@ -88,48 +88,6 @@ impl LoadCurves {
         Ok(self.core().at(Some(load))?)
     }
 
-    /// The same curves, known at these loads only. Between their own loads, `power` says over what
-    /// gain and offset are straight: over the load's magnitude to this power.
-    pub(crate) fn resampled(&self, loads: &[f64], power: f64) -> Self {
-        let place = |load: f64| load.abs().powf(power);
-        let of = |values: &Vec<f64>, power: bool| match values.is_empty() {
-            true => Vec::new(),
-            false => loads
-                .iter()
-                .map(|load| {
-                    self.value(values, *load, &|load| match power {
-                        true => place(load),
-                        false => load,
-                    })
-                })
-                .collect(),
-        };
-        Self {
-            loads: loads.to_vec(),
-            shifts: of(&self.shifts, false),
-            scales: of(&self.scales, false),
-            gains: of(&self.gains, true),
-            offsets: of(&self.offsets, true),
-        }
-    }
-
-    /// A curve at a load, straight over `place`, and held beyond its ends.
-    fn value(&self, values: &[f64], load: f64, place: &dyn Fn(f64) -> f64) -> f64 {
-        let last = self.loads.len() - 1;
-        let load = load.clamp(self.loads[0], self.loads[last]);
-        if last == 0 {
-            return values[0];
-        }
-        let k = self
-            .loads
-            .partition_point(|knot| *knot <= load)
-            .clamp(1, last)
-            - 1;
-        let (from, to) = (place(self.loads[k]), place(self.loads[k + 1]));
-        let part = (place(load) - from) / (to - from);
-        values[k] + part * (values[k + 1] - values[k])
-    }
-
     /// The shift at a load, which goes on beyond the ends with the slope of the outermost piece.
     pub(crate) fn extended(&self, load: f64) -> f64 {
         let last = self.loads.len() - 1;

@@ -1,8 +1,8 @@
 //! The stages of a model, in the form that the core runs.
 
 use crate::error::{Error, Result};
-use crate::model::{CreepTerm, FirstOrder, Model, StageConstants};
-use hysteron_core::{Axis, Load, Stages};
+use crate::model::{CreepTerm, FirstOrder, Model, Registration, StageConstants};
+use hysteron_core::{Axis, Direction, Load, Stages};
 
 impl Model {
     /// The constants of the stages around the operators, as the core takes them. The offset is that
@@ -14,6 +14,7 @@ impl Model {
             body: self.thermal.map(|body| body.core()),
             axis: Axis {
                 load: curves.map_or(Load::NONE, |curves| curves.core()),
+                registration: self.registration.core(),
                 spacing: &self.spacing,
             },
             behind: self.behind.stages().behind,
@@ -41,6 +42,9 @@ impl Model {
             load.scales,
             load.gains,
             load.offsets,
+            &self.registration.knots,
+            &self.registration.rising,
+            &self.registration.falling,
             &self.spacing,
         ];
         let behind = self.behind.iter().skip(in_front.len());
@@ -58,6 +62,7 @@ impl Model {
     pub fn is_plain(&self) -> bool {
         self.load.is_none()
             && self.thermal.is_none()
+            && self.registration.is_none()
             && self.spacing.is_empty()
             && self.behind.is_none()
     }
@@ -84,6 +89,13 @@ impl Model {
         self.spacing = corners;
         self.check_stages()?;
         Ok(self)
+    }
+
+    /// At which inputs rising and falling input pass each threshold, where these inputs are not the
+    /// positions on the axis of the operators.
+    #[must_use]
+    pub fn registration(&self) -> &Registration {
+        &self.registration
     }
 
     /// The terms of the creep after the operators.
@@ -165,14 +177,25 @@ impl Model {
             [low, .., high] => (*low, *high),
             _ => (plane.bottom(), plane.max()),
         };
-        let Some(load) = &self.load else {
-            return (low, high);
+        let axis = self.stages().axis;
+        let middle = self.load.as_ref().map(|load| {
+            let (from, to) = load.range();
+            0.5 * (from + to)
+        });
+        // A corner of the spacing is level 0 and level K, which stand for the ends of the plane.
+        let axis = Axis {
+            spacing: &[],
+            ..axis
         };
-        let (from, to) = load.range();
-        let middle = 0.5 * (from + to);
-        match load.curves.as_ref().map(|curves| curves.at(middle)) {
-            Some(Ok(at)) => ((low + at.shift) / at.scale, (high + at.shift) / at.scale),
-            _ => (low, high),
+        match axis.load.at(middle) {
+            Ok(at) => {
+                let input = |way, x| axis.backward(plane, at, way, x);
+                (
+                    input(Direction::Falling, low),
+                    input(Direction::Rising, high),
+                )
+            }
+            Err(_) => (low, high),
         }
     }
 

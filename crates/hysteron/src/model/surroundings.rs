@@ -118,8 +118,8 @@ impl Model {
         Ok(count)
     }
 
-    /// The inputs as the operators see them: behind the thermal body, shifted by the load, on the
-    /// uniform grid of the plane.
+    /// The inputs as the operators see them, from the model's start on: behind the thermal body,
+    /// shifted by the load, behind the registration, on the uniform grid of the plane.
     ///
     /// # Errors
     /// As [`Model::run_in`].
@@ -131,7 +131,7 @@ impl Model {
         if self.is_plain() && surroundings.load.is_none() {
             return Ok(Cow::Borrowed(input));
         }
-        let mut state = self.off();
+        let mut state = self.start();
         let samples = surroundings.samples(self, input)?.map(|(index, sample)| {
             self.step(&mut state, sample)
                 .map_err(|error| at_index(error, index))?;

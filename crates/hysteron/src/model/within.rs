@@ -2,7 +2,9 @@
 //! on such a recording, and its result goes back between the stages.
 
 use crate::error::{Error, Result};
-use crate::model::{FirstOrder, LoadCurves, Model, Operators, Sign, StageConstants, Surroundings};
+use crate::model::{
+    FirstOrder, LoadCurves, Model, Operators, Registration, Sign, StageConstants, Surroundings,
+};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use hysteron_core::Curve;
@@ -14,6 +16,7 @@ pub(crate) struct Found {
     pub(crate) thermal: Option<FirstOrder>,
     pub(crate) drive: Option<(f64, f64)>,
     pub(crate) curves: Option<LoadCurves>,
+    pub(crate) registration: Registration,
     pub(crate) spacing: Vec<f64>,
     pub(crate) behind: StageConstants<f64>,
     pub(crate) curve: Option<Bend>,
@@ -60,7 +63,7 @@ impl Model {
         model
     }
 
-    /// The recording as [`Model::within`] sees it: its input behind body, load and spacing, its
+    /// The recording as [`Model::within`] sees it: its input behind body, load, registration and spacing, its
     /// output in front of the stages behind the operators. For a model at one load.
     ///
     /// # Errors
@@ -88,6 +91,7 @@ impl Model {
         if let Some(load) = &mut self.load {
             load.curves = found.curves;
         }
+        self.registration = found.registration;
         self.spacing = found.spacing;
         let (offset, sign) = (self.offset(), self.sign());
         let anchored = found.curve.map(|curve| curve.anchored(offset, sign));

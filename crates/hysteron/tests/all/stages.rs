@@ -298,6 +298,117 @@ fn a_load_that_was_left_out_is_predicted_by_the_shift() {
     assert!((slope - 0.12).abs() < 0.006, "{slope}");
 }
 
+/// A simulated wire whose loop moves and widens with the stress: heating is delayed by more than
+/// cooling. `least` is its stroke without stress, of that at 200.
+fn widening(least: f64) -> Model {
+    let weight = |(i, j): (usize, usize)| if j - i == 3 { 1.0 } else { 0.02 };
+    let weights: Vec<f64> = hysteron::operators(12).map(weight).collect();
+    let text = serde_json::json!({
+        "format": "hysteron-model", "version": 3, "operator": "mkp",
+        "plane": {"min": 35.0, "max": 90.0, "levels": 12}, "weights": weights,
+        "output": {"sign": -1},
+        "load": {
+            "min": 0.0, "max": 200.0, "parts": [{"offset": 0.0, "weights": weights}],
+            "curves": {"loads": [0.0, 200.0], "gains": [least, 1.0], "offsets": [0.0, 0.5]},
+        },
+        "stages": {
+            "knots": [30.0, 60.0, 90.0],
+            "rising": [30.0, 60.0, 90.0, 62.0, 84.0, 120.0],
+            "falling": [30.0, 60.0, 90.0, 46.0, 76.0, 100.0],
+        },
+    });
+    Model::from_json(&text.to_string()).unwrap()
+}
+
+fn recorded(plant: &Model, stress: f64) -> Recording {
+    let input: Vec<f64> = (0..500)
+        .map(|n| 80.0 - 60.0 * (f64::from(n) * 0.025).cos())
+        .collect();
+    let load = vec![stress; input.len()];
+    let around = Surroundings {
+        time: None,
+        load: Some(&load),
+    };
+    let output = plant.simulate_in(&input, around).unwrap();
+    let mut recording = Recording::new(input, output).unwrap();
+    recording.load = Some(load);
+    recording
+}
+
+#[test]
+fn a_loop_that_widens_with_the_load_is_registered() {
+    let plant = widening(0.5);
+    let fitted = [25.0, 75.0, 125.0, 175.0].map(|stress| recorded(&plant, stress));
+    let unseen = recorded(&plant, 100.0);
+    let error = |law| {
+        let fit = Fit::from(FitOptions::plain()).load_law(law);
+        let model = fit.run(&fitted).unwrap();
+        let found = evaluate(&model, &unseen).unwrap().forward;
+        (model, found.nrmse_percent.unwrap())
+    };
+    let (model, registered) = error(LoadLaw::Auto);
+    let (shift, shifted) = error(LoadLaw::Shift);
+    assert!(!model.registration().is_none() && shift.registration().is_none());
+    // A shift cannot widen the loop. What is left is that of 20 levels.
+    assert!(
+        registered < 1.0 && registered < 0.6 * shifted,
+        "{registered} {shifted}"
+    );
+    // A file carries all of it.
+    let again = Model::from_json(&model.to_json()).unwrap();
+    assert_eq!(again, model);
+    // The model at one load is the model with that load.
+    let at = model.at_load(100.0).unwrap();
+    let mut alone = unseen.clone();
+    alone.load = None;
+    let outputs = |model: &Model, recording: &Recording| {
+        let around = Surroundings::from_recording(model, recording);
+        model.simulate_in(&recording.input, around).unwrap()
+    };
+    let (at_load, with_load) = (outputs(&at, &alone), outputs(&model, &unseen));
+    for (a, b) in at_load.iter().zip(with_load) {
+        // Rounding of positions, times the slope of the operators.
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+    // Every output is reached, at any load, however it changes.
+    let inverse = model.inverse().unwrap();
+    let mut state = model.start();
+    for n in 0..200 {
+        let load = 25.0 + 150.0 * (0.5 + 0.5 * (f64::from(n) * 0.7).sin());
+        let (off, on) = model.at_load(load).unwrap().output_range();
+        let target = off + (on - off) * (0.5 + 0.5 * (f64::from(n) * 0.3).cos());
+        let wanted = Wanted {
+            load: Some(load),
+            ..Target::new(target).into()
+        };
+        let found = inverse.step(&mut state, wanted).unwrap();
+        assert_eq!(found.status, Status::Ok, "{n}");
+    }
+}
+
+/// A load with hardly any stroke says nothing about the others.
+#[test]
+fn a_load_with_hardly_any_stroke_has_no_say() {
+    let plant = widening(0.003);
+    let all = [0.0, 50.0, 100.0, 150.0, 200.0];
+    for law in [LoadLaw::Auto, LoadLaw::Shift] {
+        let of = |loads: &[f64]| -> f64 {
+            let fitted: Vec<Recording> = loads.iter().map(|s| recorded(&plant, *s)).collect();
+            let fit = Fit::from(FitOptions::plain()).load_law(law);
+            let model = fit.run(&fitted).unwrap();
+            let found = evaluate(&model, &recorded(&plant, 100.0)).unwrap().forward;
+            found.nrmse_percent.unwrap()
+        };
+        let without: Vec<f64> = all.into_iter().filter(|stress| *stress != 100.0).collect();
+        let (with_silent, alone) = (of(&without), of(&without[1..]));
+        // Stroke and shift between 50 and 150 do not come from the load 0.
+        assert!(
+            with_silent < alone + 1.5,
+            "{law:?}: {with_silent} with it, {alone} without"
+        );
+    }
+}
+
 #[test]
 fn levels_move_to_where_a_sharp_loop_moves() {
     let plane = Plane::new(-1.0, 1.0, 400).unwrap();

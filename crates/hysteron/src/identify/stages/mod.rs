@@ -59,12 +59,13 @@ pub(crate) fn fit(
     }
     let mut options = options.clone();
     let loaded = seen.iter().any(|recording| recording.load.is_some());
-    if loaded && options.load_law == LoadLaw::Shift {
+    if loaded && options.load_law != LoadLaw::Weights {
         let law = load::find(&seen, &options, progress)?;
         options.load_degree = Some(law.degree);
-        seen = Cow::Owned(load::behind(&law.curves, &seen));
+        seen = Cow::Owned(law.seen);
         notes.insert("load".to_owned(), json!(law.report));
         found.curves = Some(law.curves.clone());
+        found.registration = law.registration;
         options.load_curves = law.uses_curves.then_some(law.curves);
     }
     let unspaced = Seen {

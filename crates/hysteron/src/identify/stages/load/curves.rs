@@ -1,24 +1,21 @@
-//! Curves over the load that are made from others, and recordings behind them.
+//! Curves over the load that are made from others, and inputs behind them.
 
-use crate::identify::changed::with_inputs;
-use crate::model::LoadCurves;
+use crate::error::Result;
+use crate::model::{LoadCurves, Plane, Registration, Start};
 use crate::recording::Recording;
+use hysteron_core::Axis;
 
-/// Knots for each pair of neighbouring loads, where gain and offset between them are not straight.
+/// Knots for each pair of neighbouring loads, where a curve between them is not straight.
 const FINE: usize = 6;
 
-/// The curves with more knots, where gain and offset between the loads are not straight.
-pub(super) fn refined(curves: &LoadCurves, power: f64) -> LoadCurves {
-    if power == 1.0 {
-        return curves.clone();
-    }
-    let mut loads = Vec::new();
-    for pair in curves.loads.windows(2) {
-        let knot = |n: usize| pair[0] + (pair[1] - pair[0]) * n as f64 / FINE as f64;
-        loads.extend((0..FINE).map(knot));
-    }
-    loads.extend(curves.loads.last());
-    curves.resampled(&loads, power)
+/// The loads with more of them between any two.
+pub(super) fn fine(loads: &[f64]) -> Vec<f64> {
+    let between = |pair: &[f64]| {
+        let (low, high) = (pair[0], pair[1]);
+        (0..FINE).map(move |n| low + (high - low) * n as f64 / FINE as f64)
+    };
+    let inner = loads.windows(2).flat_map(between);
+    inner.chain(loads.last().copied()).collect()
 }
 
 /// The curves without gain and offset.
@@ -30,19 +27,44 @@ pub(super) fn moving_only(curves: &LoadCurves) -> LoadCurves {
     }
 }
 
-/// The recordings with the load's shift taken off their inputs.
-pub(in crate::identify::stages) fn behind(
+/// The curves without what they are at load number `left`.
+pub(super) fn without(curves: &LoadCurves, left: usize) -> LoadCurves {
+    let others = |values: &[f64]| {
+        let kept = values.iter().enumerate().filter(|(n, _)| *n != left);
+        kept.map(|(_, value)| *value).collect()
+    };
+    LoadCurves {
+        loads: others(&curves.loads),
+        shifts: others(&curves.shifts),
+        scales: others(&curves.scales),
+        gains: others(&curves.gains),
+        offsets: others(&curves.offsets),
+    }
+}
+
+/// The inputs of a recording as the operators see them behind load and registration.
+pub(super) fn positions(
     curves: &LoadCurves,
-    recordings: &[Recording],
-) -> Vec<Recording> {
-    with_inputs(recordings, |recording| {
-        let load = recording.load.iter().flatten();
-        let pairs = recording.input.iter().zip(load);
-        pairs
-            .map(|(t, load)| match curves.at(*load) {
-                Ok(at) => at.scale * t - at.shift,
-                Err(_) => f64::NAN,
-            })
-            .collect()
-    })
+    registration: &Registration,
+    recording: &Recording,
+    start: Start,
+) -> Result<Vec<f64>> {
+    let axis = Axis {
+        load: curves.core(),
+        registration: registration.core(),
+        spacing: &[],
+    };
+    // Without a spacing nothing is asked of it.
+    let plane = Plane::new(0.0, 1.0, 2)?;
+    let mut held = match start {
+        Start::On => f64::INFINITY,
+        _ => f64::NEG_INFINITY,
+    };
+    let load = recording.load.iter().flatten();
+    let samples = recording.input.iter().zip(load);
+    let positions = samples.map(|(t, load)| {
+        held = axis.seen(&plane, curves.at(*load)?, held, *t);
+        Ok(held)
+    });
+    positions.collect()
 }

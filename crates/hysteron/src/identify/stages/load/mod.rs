@@ -8,16 +8,19 @@
 mod curves;
 mod groups;
 mod left_out;
+mod monotone;
+mod registration;
 mod search;
+mod stroke;
 
-pub(super) use curves::behind;
-
-use crate::error::Result;
-use crate::identify::options::FitOptions;
-use crate::identify::stages::load::curves::{moving_only, refined};
+use crate::error::{Error, Result};
+use crate::identify::options::{FitOptions, LoadLaw};
+use crate::identify::stages::load::curves::{fine, moving_only};
 use crate::identify::stages::load::groups::{Groups, Samples};
+use crate::identify::stages::load::registration::Loops;
 use crate::identify::stages::load::search::Search;
-use crate::model::{LoadCurves, Smooth};
+use crate::identify::stages::load::stroke::Stroke;
+use crate::model::{LoadCurves, Registration, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use serde::Serialize;
@@ -37,6 +40,9 @@ const WORTH: f64 = 0.9;
 /// The law of the load, and what chose it.
 pub(super) struct Law {
     pub(super) curves: LoadCurves,
+    pub(super) registration: Registration,
+    /// The recordings as the operators see them.
+    pub(super) seen: Vec<Recording>,
     /// Whether gain and offset are among the curves. Otherwise the weights depend on the load, with
     /// the order `degree`.
     pub(super) uses_curves: bool,
@@ -51,18 +57,86 @@ pub(super) struct Report {
     loads: Vec<f64>,
     /// Mean slope of the shift.
     slope: f64,
-    /// The laws tried, and their errors on loads left out, in percent of the range.
+    /// Those with hardly any stroke: they have no say in the choice of the law.
+    silent: Vec<f64>,
+    /// The law taken.
+    chosen: Tried,
+    /// Its error on loads left out, in percent of the range of outputs at such a load; `None`
+    /// without a load between two others.
+    left_out_percent: Option<f64>,
+    /// The laws tried, and their errors on loads left out, or fitted where none can be.
     tried: Vec<(Tried, f64)>,
 }
 
-/// How stroke and offset follow the load.
+/// How axis, stroke and offset follow the load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum Tried {
-    /// One set of weights; its gain and offset are straight over the load to this power.
-    Gain { power: f64, scaled: bool },
-    /// Weights of this order in the load.
+    /// One set of weights behind a registration; how its gain and offset follow the load.
+    Registered { stroke: Stroke },
+    /// One set of weights on a shifted axis.
+    Gain { stroke: Stroke, scaled: bool },
+    /// Weights of this order in the load, on a shifted axis.
     Weights { degree: usize, scaled: bool },
+}
+
+impl Tried {
+    /// Whether both move the axis in the same way.
+    fn is_like(self, other: Self) -> bool {
+        use Tried::{Gain, Registered, Weights};
+        match (self, other) {
+            (Registered { .. }, Registered { .. }) => true,
+            (Gain { scaled: a, .. }, Gain { scaled: b, .. })
+            | (Weights { scaled: a, .. }, Weights { scaled: b, .. }) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// What moves at each load.
+struct Moves {
+    curves: LoadCurves,
+    /// The output of all operators at the gain 1, with its sign.
+    reach: f64,
+    /// The loops that are registered; `None` where the axis is shifted only.
+    loops: Option<Loops>,
+}
+
+impl Search<'_> {
+    /// A shift for each load, and with `scaled` a scale.
+    fn shifted(&self, scaled: bool) -> Result<Moves> {
+        let mut curves = self.curves(scaled)?;
+        let reach = self.find_gains(&mut curves, &Registration::default())?;
+        Ok(Moves {
+            curves,
+            reach,
+            loops: None,
+        })
+    }
+
+    /// A registration of the loops; `None` where the recordings do not show them.
+    fn registered(&self) -> Result<Option<Moves>> {
+        let Some(loops) = Loops::new(self.recordings, self.samples, self.groups) else {
+            return Ok(None);
+        };
+        let loads = self.groups.knots.clone();
+        let mut curves = LoadCurves {
+            shifts: vec![0.0; loads.len()],
+            loads,
+            ..LoadCurves::default()
+        };
+        for (g, middle) in loops.middles() {
+            curves.shifts[g] = middle;
+        }
+        self.fill_in(&mut curves);
+        let registration = loops.registration(&curves, &curves.loads);
+        let reach = self.find_gains(&mut curves, &registration)?;
+        Ok(Some(Moves {
+            curves,
+            reach,
+            loops: Some(loops),
+        }))
+    }
 }
 
 pub(super) fn find(
@@ -87,68 +161,87 @@ pub(super) fn find(
         },
         progress,
     };
-    let plain = search.curves(false)?;
-    let inner = match groups.group {
-        Some(_) => groups.knots.len().saturating_sub(2),
-        None => 0,
-    };
-    // A stroke that saturates is nearly straight over the root of the load. Without loads to leave
-    // out, that is what to expect of a tension. Of a load below zero nothing is known: straight.
-    let rooted = groups.knots.iter().all(|load| *load >= 0.0);
-    let powers: &[f64] = if rooted { &[0.5, 1.0] } else { &[1.0] };
-    let mut candidates = Vec::new();
-    for scaled in [false, true] {
-        match (options.load_degree, &groups.group) {
-            (Some(degree), _) => candidates.push(Tried::Weights { degree, scaled }),
-            (None, None) => candidates.push(Tried::Weights { degree: 1, scaled }),
-            (None, Some(_)) => {
-                candidates.extend(powers.iter().map(|&power| Tried::Gain { power, scaled }));
-                // Two loads cannot tell weights of their own from one shape.
-                let degrees = 1..=groups.knots.len().saturating_sub(2).min(2);
-                candidates.extend(degrees.map(|degree| Tried::Weights { degree, scaled }));
+    let inner = search.inner().count();
+    let mut ways = Vec::new();
+    // A range is one of inputs, which are no positions behind a registration.
+    let open = options.load_law == LoadLaw::Auto
+        && options.load_degree.is_none()
+        && options.range.is_none()
+        && groups.group.is_some();
+    if open {
+        ways.extend(search.registered()?);
+    }
+    ways.push(search.shifted(false)?);
+    if inner > 0 {
+        ways.push(search.shifted(true)?);
+    }
+    let mut best: Option<(&Moves, Tried, f64)> = None;
+    let mut tried: Vec<(Tried, f64)> = Vec::new();
+    for moves in &ways {
+        for candidate in candidates(moves, options, &groups) {
+            progress.tell("loads left out", f64::NAN)?;
+            let error = search.left_out(moves, candidate)?;
+            tried.push((candidate, error));
+            let better = best.is_none_or(|(_, other, least)| {
+                let worth = if candidate.is_like(other) { 1.0 } else { WORTH };
+                inner > 0 && error < worth * least
+            });
+            if better {
+                best = Some((moves, candidate, error));
             }
         }
     }
-    let stretched = match inner {
-        0 => None,
-        _ => Some(search.curves(true)?),
+    let Some((moves, law, error)) = best else {
+        return Err(Error::Fit("no law of the load was tried".into()));
     };
-    let mut tried: Vec<(Tried, f64)> = Vec::new();
-    for candidate in candidates {
-        let (Tried::Gain { scaled, .. } | Tried::Weights { scaled, .. }) = candidate;
-        let curves = match (scaled, &stretched) {
-            (false, _) => &plain,
-            (true, Some(curves)) => curves,
-            (true, None) => continue,
-        };
-        progress.tell("loads left out", f64::NAN)?;
-        let error = search.left_out(curves, candidate)?;
-        tried.push((candidate, error));
-    }
-    let mut best = tried[0];
-    for next in &tried[1..] {
-        if inner > 0 && next.1 < WORTH * best.1 {
-            best = *next;
+    let curves = &moves.curves;
+    let rows = fine(&curves.loads);
+    let (curves, uses_curves, degree) = match law {
+        Tried::Registered { stroke } | Tried::Gain { stroke, .. } => {
+            (stroke.at(curves, moves.reach, &rows), true, 0)
         }
-    }
-    let (Tried::Gain { scaled, .. } | Tried::Weights { scaled, .. }) = best.0;
-    let curves = match (scaled, stretched) {
-        (true, Some(curves)) => curves,
-        _ => plain,
+        Tried::Weights { degree, .. } => (moving_only(curves), false, degree),
     };
-    let (curves, uses_curves, degree) = match best.0 {
-        Tried::Gain { power, .. } => (refined(&curves, power), true, 0),
-        Tried::Weights { degree, .. } => (moving_only(&curves), false, degree),
-    };
-    let report = Report {
-        loads: groups.knots.clone(),
-        slope: curves.slope(),
-        tried,
+    let registration = match (&moves.loops, law) {
+        (Some(loops), Tried::Registered { .. }) => loops.registration(&moves.curves, &rows),
+        _ => Registration::default(),
     };
     Ok(Law {
+        seen: search.seen(&curves, &registration, recordings)?,
+        report: Report {
+            loads: groups.knots.clone(),
+            slope: curves.slope(),
+            silent: (0..groups.knots.len())
+                .filter(|g| !groups.telling[*g])
+                .map(|g| groups.knots[g])
+                .collect(),
+            chosen: law,
+            left_out_percent: (inner > 0).then_some(error),
+            tried,
+        },
         curves,
+        registration,
         uses_curves,
         degree,
-        report,
     })
+}
+
+/// The laws of stroke and offset that are tried where the axis moves so.
+fn candidates(moves: &Moves, options: &FitOptions, groups: &Groups) -> Vec<Tried> {
+    let scaled = !moves.curves.scales.is_empty();
+    let strokes = Stroke::possible(&groups.knots).iter();
+    match (options.load_degree, &groups.group) {
+        _ if moves.loops.is_some() => strokes
+            .map(|&stroke| Tried::Registered { stroke })
+            .collect(),
+        (Some(degree), _) => vec![Tried::Weights { degree, scaled }],
+        (None, None) => vec![Tried::Weights { degree: 1, scaled }],
+        (None, Some(_)) => {
+            // Two loads cannot tell weights of their own from one shape.
+            let degrees = 1..=groups.knots.len().saturating_sub(2).min(2);
+            let weights = degrees.map(|degree| Tried::Weights { degree, scaled });
+            let gains = strokes.map(|&stroke| Tried::Gain { stroke, scaled });
+            gains.chain(weights).collect()
+        }
+    }
 }

@@ -4,10 +4,11 @@ use crate::error::Result;
 use crate::identify::changed::thin;
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
-use crate::identify::stages::load::curves::behind;
+use crate::identify::stages::load::curves::positions;
 use crate::identify::stages::load::groups::{Groups, Samples};
+use crate::identify::stages::load::monotone::make_monotone;
 use crate::identify::weights::problem::Problem;
-use crate::model::LoadCurves;
+use crate::model::{LoadCurves, Registration};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
@@ -87,19 +88,51 @@ impl Search<'_> {
             step *= 0.5;
         }
         self.fill_in(&mut shift);
-        self.find_gains(&mut shift)?;
         Ok(shift)
+    }
+
+    /// The recordings behind curves and registration. A load that does not tell its shift says
+    /// nothing of operators that no other load moves: its inputs end where those of the others do.
+    pub(super) fn seen(
+        &self,
+        curves: &LoadCurves,
+        registration: &Registration,
+        recordings: &[Recording],
+    ) -> Result<Vec<Recording>> {
+        let start = self.options.start;
+        let with = |recording: &Recording| {
+            Ok(Recording {
+                input: positions(curves, registration, recording, start)?,
+                ..recording.clone()
+            })
+        };
+        let mut seen: Vec<Recording> = recordings.iter().map(with).collect::<Result<_>>()?;
+        let count: usize = seen.iter().map(Recording::len).sum();
+        let telling = |n: usize| match &self.groups.group {
+            Some(group) if group.len() == count => self.groups.telling[group[n]],
+            _ => true,
+        };
+        let inputs = seen.iter().flat_map(|recording| &recording.input);
+        let own = inputs.enumerate().filter(|(n, _)| telling(*n));
+        let (low, high) = range(&own.map(|(_, x)| *x).collect::<Vec<_>>());
+        let inputs = seen.iter_mut().flat_map(|recording| &mut recording.input);
+        inputs.for_each(|x| *x = x.clamp(low, high));
+        Ok(seen)
     }
 
     /// Gain and offset of each load: the line from the outputs of one set of weights, which fits the
     /// loops scaled to their own height, to the outputs measured at that load. Gains count from that
-    /// of the largest one.
-    pub(super) fn find_gains(&self, curves: &mut LoadCurves) -> Result<()> {
+    /// of the largest one. Returns the output of all operators at the gain 1, with its sign.
+    pub(super) fn find_gains(
+        &self,
+        curves: &mut LoadCurves,
+        registration: &Registration,
+    ) -> Result<f64> {
         let Some(group) = &self.groups.group else {
-            return Ok(());
+            return Ok(0.0);
         };
         let spans = self.spans(group);
-        let mut seen = behind(curves, &self.scaled());
+        let mut seen = self.seen(curves, registration, &self.scaled())?;
         seen.iter_mut().for_each(|recording| recording.load = None);
         let mut problem = Problem::new(&seen, &self.options)?;
         let telling = group.iter().map(|g| f64::from(self.groups.telling[*g]));
@@ -121,9 +154,13 @@ impl Search<'_> {
             let slope = |n: usize| sum(n) - h;
             let square = mean(&|n| slope(n) * slope(n));
             let product = mean(&|n| slope(n) * (self.samples.output[n] - y));
-            // A load with hardly any stroke has a small gain, and none has a gain below zero.
+            // No load has a gain below zero. One with hardly any stroke does not show the shape: its
+            // gain is its height.
             let (low, high) = spans[g];
-            gains[g] = (product / square.max(f64::MIN_POSITIVE)).max(0.05 * (high - low));
+            gains[g] = match self.groups.telling[g] {
+                true => (product / square.max(f64::MIN_POSITIVE)).max(0.05 * (high - low)),
+                false => high - low,
+            };
             offsets[g] = y - gains[g] * h;
         }
         let most = gains.iter().fold(f64::MIN_POSITIVE, |a, b| a.max(*b));
@@ -131,7 +168,8 @@ impl Search<'_> {
             .iter_mut()
             .for_each(|gain| *gain = (*gain / most).max(1e-6));
         (curves.gains, curves.offsets) = (gains, offsets);
-        Ok(())
+        let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        Ok(most * (0..group.len()).map(sum).fold(0.0, larger))
     }
 
     /// Smallest and largest output of each group.
@@ -246,7 +284,7 @@ impl Search<'_> {
     /// Error of one set of weights behind this shift. Where the load changes all the time, the
     /// weights follow it in the first order.
     pub(super) fn rated(&self, recordings: &[Recording], shift: &LoadCurves) -> Result<f64> {
-        let mut seen = behind(shift, recordings);
+        let mut seen = self.seen(shift, &Registration::default(), recordings)?;
         let options = match self.groups.group {
             Some(_) => {
                 seen.iter_mut().for_each(|recording| recording.load = None);
@@ -260,30 +298,4 @@ impl Search<'_> {
         let model = fit_weights(&seen, &options, Progress::NONE)?;
         Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse))
     }
-}
-
-/// The nearest monotone values: neighbours in the wrong order take their mean (pool adjacent
-/// violators, Barlow et al. 1972).
-fn make_monotone(values: &mut [f64], falls: bool) {
-    let sign = if falls { -1.0 } else { 1.0 };
-    let mut pools: Vec<(f64, usize)> = Vec::new();
-    for value in values.iter() {
-        let mut pool = (sign * value, 1);
-        while let Some(&(mean, count)) = pools.last().filter(|(mean, _)| *mean > pool.0) {
-            let total = count + pool.1;
-            pool = (
-                (mean * count as f64 + pool.0 * pool.1 as f64) / total as f64,
-                total,
-            );
-            pools.pop();
-        }
-        pools.push(pool);
-    }
-    let all = pools
-        .into_iter()
-        .flat_map(|(mean, count)| vec![sign * mean; count]);
-    values
-        .iter_mut()
-        .zip(all)
-        .for_each(|(value, pooled)| *value = pooled);
 }
