@@ -60,7 +60,7 @@ pub use scalar::Real;
 pub use solution::{Solution, Status};
 pub use stages::{
     Axis, Behind, Body, Constant, Creep, Curve, Decay, Declared, Lag, Load, Loaded, MAX_CREEP,
-    MAX_PARTS, Parts, Placed, RATE_NUMBERS, Range, Rates, STATE_NUMBERS, Sample, StageState,
+    MAX_PARTS, Parts, Placed, RATE_NUMBERS, Range, Rates, Ring, STATE_NUMBERS, Sample, StageState,
     Stages, Unit, Wanted, bernstein, mix,
 };
 pub use state::{State, turn_capacity};

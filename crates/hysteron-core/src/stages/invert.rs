@@ -139,10 +139,11 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
-        let aim = self.aim(memory, rates, loaded, target);
+        let range = model.output_range();
+        let aim = self.aim(memory, rates, loaded, target, range);
         let solution = match aim.output.is_finite() {
             true => inverse.solve(state, aim)?,
-            // A lag in a step without length cannot move: stay.
+            // A lag or a ring in a step without length cannot move: stay.
             false => Solution {
                 input: state.input().clamp(plane.bottom(), plane.max()),
                 status: Status::Limited,
@@ -176,18 +177,20 @@ impl<T: Real> Stages<'_, T> {
             }
         }
         let slack = self.axis.rounding(plane, loaded, size);
+        let steepest = self.behind.steepest(&factors(memory, rates));
         let reached = self
             .step_loaded(model, state, memory, rates, input, loaded)?
             .output;
-        let gain = loaded.gain * self.behind.steepest_at_rest();
+        let sum = self.inward(target.output - loaded.offset);
+        self.behind.keep_wanted(&mut memory.behind, sum);
+        let gain = loaded.gain * self.behind.steepest_at_rest().max(steepest);
         let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));
         let error = (reached - target.output).max(target.output - reached);
         let magnitude = |v: T| v.max(-v);
         let offsets = magnitude(self.offset) + magnitude(loaded.offset) + magnitude(target.output);
         let offsets = offsets + self.behind.size();
         let spread = T::from_index(8) * T::EPSILON * offsets;
-        let (off, on) = model.output_range();
-        let ends = [off, on].map(|sum| self.behind.settled(loaded.gain * sum));
+        let ends = [range.0, range.1].map(|sum| self.behind.settled(loaded.gain * sum));
         let allowed = (rounding + spread).min(thousandth(ends[1] - ends[0]));
         let met = error <= target.tolerance.max(T::ZERO) + allowed;
         let reach = target.tolerance.max(gain * inverse.rounding());
@@ -201,13 +204,15 @@ impl<T: Real> Stages<'_, T> {
         Ok(Solution { input, status })
     }
 
-    /// The operators' sum that gives the target in this sample.
+    /// The operators' sum that gives the target in this sample. A ring that would swing beyond the
+    /// range of sums is led there calmly.
     fn aim(
         &self,
         memory: &StageState<T>,
         rates: &Rates<T>,
         loaded: Loaded<T>,
         target: Target<T>,
+        (off, on): (T, T),
     ) -> Target<T> {
         let heading = match (self.falling, target.heading) {
             (true, Some(Direction::Rising)) => Some(Direction::Falling),
@@ -216,7 +221,18 @@ impl<T: Real> Stages<'_, T> {
         };
         let factors = factors(memory, rates);
         let sum = self.inward(target.output - loaded.offset);
-        let h = self.behind.inverse(&memory.behind, &factors, sum);
+        let h = match self.behind.aims(&memory.behind, &factors, sum) {
+            None => self.behind.inverse(&memory.behind, &factors, sum),
+            Some(aims) => {
+                let (low, high) = (loaded.gain * off, loaded.gain * on);
+                let reach = |sum: T| low <= sum && sum <= high;
+                match reach(aims.exact) && aims.swing.into_iter().all(reach) {
+                    true => aims.exact,
+                    false if aims.exact.is_finite() => aims.calm,
+                    false => aims.exact,
+                }
+            }
+        };
         // Within so much of the sum, the output stays within its tolerance wherever it is.
         let tolerance = match target.tolerance == T::ZERO {
             true => T::ZERO,

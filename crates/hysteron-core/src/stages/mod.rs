@@ -25,6 +25,7 @@ mod invert;
 mod lag;
 mod mix;
 mod parts;
+mod ring;
 mod stage;
 mod state;
 
@@ -40,4 +41,5 @@ pub use invert::Wanted;
 pub use lag::Lag;
 pub use mix::mix;
 pub use parts::{MAX_PARTS, Parts, Placed, bernstein};
+pub use ring::Ring;
 pub use state::{RATE_NUMBERS, Rates, STATE_NUMBERS, Sample, StageState};

@@ -19,6 +19,7 @@ mod physics;
 mod plane;
 mod reached;
 mod refusals;
+mod ring;
 mod round_trip;
 mod shift;
 mod stage_parts;
