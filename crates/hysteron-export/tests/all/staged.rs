@@ -354,7 +354,7 @@ fn a_plain_model_does_without_the_stages() {
         ..options
     };
     let made = c_sampled(&case.model, folder.path(), &other, &case.sampling).unwrap();
-    let stages = ["body", "load", "spacing", "curve", "creep", "lag"];
+    let stages = ["body", "load", "spacing", "curve", "creep", "lag", "ring"];
     assert_eq!(made.stages, stages);
     let after: Vec<Vec<u8>> = files
         .iter()
