@@ -203,7 +203,7 @@
 /**
  * How many numbers the stages behind the operators remember.
  */
-#define HYSTERON_BEHIND 5
+#define HYSTERON_BEHIND 8
 
 /**
  * Operator: modified Krasnosel'skii-Pokrovskii, 0 to 1.

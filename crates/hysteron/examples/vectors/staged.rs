@@ -21,6 +21,7 @@ enum Stage {
     Creep,
     Lag,
     Curve,
+    Ring,
     /// Weights and offset of the second order in the load.
     Weights,
 }
@@ -54,12 +55,15 @@ pub fn all() -> Result<Vec<(String, String)>> {
     both("creep-mkp-5", Mkp, &[Stage::Creep], line)?;
     both("lag-mkp-5", Mkp, &[Stage::Lag], line)?;
     both("curve-mkp-5", Mkp, &[Stage::Curve], line)?;
+    both("ring-mkp-5", Mkp, &[Stage::Ring], line)?;
     both("chain-mkp-5", Mkp, &EVERY, line)?;
     both("chain-kp-5", Kp, &EVERY, (-3.5, Negative))?;
     both("chain-relay-5", Relay, &EVERY, line)?;
     let curved = [&EVERY[..], &[Stage::Curve]].concat();
     both("chain-curve-mkp-5", Mkp, &curved, line)?;
     both("chain-curve-kp-5", Kp, &curved, (-3.5, Negative))?;
+    let ringing = [&EVERY[..], &[Stage::Ring]].concat();
+    both("chain-ring-kp-5", Kp, &ringing, (-3.5, Negative))?;
     both("weights-mkp-5", Mkp, &[Stage::Weights], line)?;
     let whole = [&EVERY[..], &[Stage::Weights]].concat();
     both("chain-weights-mkp-5", Mkp, &whole, line)?;
@@ -106,6 +110,10 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
                 let knots = [0.125, 0.375, 0.5, 1.25].map(|share| short(share * total));
                 let outputs = [0.0, 0.5, 0.625, 1.5].map(|share| short(share * total));
                 text["stages"] = json!({"curve_sums": knots, "curve_outputs": outputs});
+            }
+            Stage::Ring => {
+                text["version"] = 3.into();
+                text["stages"] = json!({"ring_frequency": [1.0], "ring_damping": [0.125]});
             }
             Stage::Weights => {
                 let offset = |part: usize| plain.offset() + [0.0, 1.5, -0.25][part];
@@ -352,7 +360,8 @@ fn references(model: &Model) -> Vec<Reference> {
     ];
     if model.is_timed() {
         // A lag that follows a body cannot tell which way to drive while time stands still.
-        let still = model.thermal.is_none() || model.lag() == 0.0;
+        let rings = !model.constants().get("ring_frequency").is_empty();
+        let still = (model.thermal.is_none() || model.lag() == 0.0) && !rings;
         all.push(Reference {
             dt: times(&mut random, still),
             ..run(
