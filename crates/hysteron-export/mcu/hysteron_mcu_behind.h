@@ -14,6 +14,9 @@ enum { CREEP_MEMORY = 0, LAG_MEMORY = 4, RING_MEMORY = 5 };
 enum { CREEP_FACTORS = 0, LAG_FACTORS = 4, RING_FACTORS = 5 };
 enum { MOST_CREEP = 4 };
 
+/* From what to what the exact inverse of a ring may alternate, as a part of the range of sums. */
+#define LITTLE ((hys_real)1 / (hys_real)128)
+
 static inline int is_there(const hys_actuator *actuator, unsigned stage)
 {
     return (actuator->there >> stage & 1u) != 0u;
@@ -129,10 +132,10 @@ static inline hys_real ring_forward(const hys_actuator *actuator, hys_real *memo
     return ring[0];
 }
 
-/* The sums that may be wanted: exact, calm, and the two between which the exact inverse would
+/* The sums that may be wanted: exact, soft, calm, and the two between which the exact inverse would
  * alternate afterwards. */
 typedef struct {
-    hys_real exact, calm, low, high;
+    hys_real exact, soft, calm, low, high;
 } ring_aims;
 
 static inline ring_aims aims_of_ring(const hys_actuator *actuator, const hys_real *memory,
@@ -141,15 +144,17 @@ static inline ring_aims aims_of_ring(const hys_actuator *actuator, const hys_rea
     const hys_real *factor = actuator->factors + RING_FACTORS, *ring = memory + RING_MEMORY;
     hys_real gain = factor[0], b = factor[1], d = factor[2], turn = factor[3];
     hys_real at = ring[0], v = ring[1], wanted = ring[2], zeta;
-    hys_real rate, follow, off, swing, least, most, loss, damp;
+    hys_real rate, half, follow, off, swing, least, most, loss, damp;
     ring_aims aims;
     if (rests) {
-        aims.exact = aims.calm = aims.low = aims.high = y;
+        aims.exact = aims.soft = aims.calm = aims.low = aims.high = y;
         return aims;
     }
     zeta = actuator->ring_damping.numbers[0];
     aims.exact = at + (y - at - b * v) / gain;
     rate = (y - wanted) / turn;
+    half = (hys_real)0.5 * b;
+    aims.soft = at + (y - at - b * v + half * (rate - d * v)) / (gain + half * b);
     follow = y + (zeta + zeta) * rate;
     off = b / gain * (b * (aims.exact - at) + d * v - rate);
     swing = hys_max(off, -off);
@@ -201,13 +206,14 @@ static inline hys_real before_ring_inverse(const hys_actuator_state *state, hys_
 }
 
 /* The operators' sum that is wanted for an output in this sample, where sums reach from `low` to
- * `high`. A ring that would swing beyond that is led there calmly. */
+ * `high`. Where the exact inverse of a ring would alternate by more than a little, it is led there
+ * softly, and calmly where that would go beyond the range of sums. */
 static inline hys_real behind_inverse(const hys_actuator_state *state, hys_real y, hys_real low,
                                       hys_real high)
 {
     const hys_actuator *actuator = state->actuator;
     ring_aims aims;
-    hys_real exact, from, to;
+    hys_real exact, from, to, alternates;
     if (!is_there(actuator, RING)) {
         return before_ring_inverse(state, y);
     }
@@ -216,7 +222,8 @@ static inline hys_real behind_inverse(const hys_actuator_state *state, hys_real 
     from = before_ring_inverse(state, aims.low);
     to = before_ring_inverse(state, aims.high);
     if (low <= exact && exact <= high && low <= from && from <= high && low <= to && to <= high) {
-        return exact;
+        alternates = hys_max(to - from, from - to);
+        return alternates <= (high - low) * LITTLE ? exact : before_ring_inverse(state, aims.soft);
     }
     return is_finite(exact) ? before_ring_inverse(state, aims.calm) : exact;
 }

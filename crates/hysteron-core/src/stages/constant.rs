@@ -171,3 +171,9 @@ pub(crate) fn one<T: Copy>(list: &[T]) -> Option<Option<T>> {
 pub(super) fn thousandth<T: Real>(range: T) -> T {
     range * (T::ONE / T::from_index(1000))
 }
+
+/// From what to what the exact inverse of a ring may alternate, as a part of the range of sums: so
+/// little that operators and drive hardly notice.
+pub(super) fn little<T: Real>() -> T {
+    T::ONE / T::from_index(128)
+}

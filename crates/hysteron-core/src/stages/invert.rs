@@ -9,7 +9,7 @@ use crate::scalar::Real;
 use crate::solution::{Solution, Status};
 use crate::stages::axis::Loaded;
 use crate::stages::chain::{Stages, factors};
-use crate::stages::constant::thousandth;
+use crate::stages::constant::{little, thousandth};
 use crate::stages::state::{Rates, StageState};
 use crate::state::State;
 use crate::target::{Direction, Target};
@@ -204,8 +204,9 @@ impl<T: Real> Stages<'_, T> {
         Ok(Solution { input, status })
     }
 
-    /// The operators' sum that gives the target in this sample. A ring that would swing beyond the
-    /// range of sums is led there calmly.
+    /// The operators' sum that gives the target in this sample. Where the exact inverse of a ring
+    /// would alternate by more than a little, it is led there softly, and calmly where that would go
+    /// beyond the range of sums.
     fn aim(
         &self,
         memory: &StageState<T>,
@@ -226,8 +227,11 @@ impl<T: Real> Stages<'_, T> {
             Some(aims) => {
                 let (low, high) = (loaded.gain * off, loaded.gain * on);
                 let reach = |sum: T| low <= sum && sum <= high;
-                match reach(aims.exact) && aims.swing.into_iter().all(reach) {
-                    true => aims.exact,
+                let [from, to] = aims.swing;
+                let little = (to - from).max(from - to) <= (high - low) * little();
+                match reach(aims.exact) && reach(from) && reach(to) {
+                    true if little => aims.exact,
+                    true => aims.soft,
                     false if aims.exact.is_finite() => aims.calm,
                     false => aims.exact,
                 }

@@ -14,8 +14,7 @@ use crate::stages::stage::Stage;
 /// lies within the unit circle: `1 + z > 0` comes to `sinh σ > ζ' sin(σ/ζ')` with `σ = ζωΔ` and
 /// `ζ' = ζ/√(1−ζ²)`, and `1 − z > 0` to `cosh σ > cos(σ/ζ')`. In a step that is short beside the
 /// period `z` comes close to −1, and the input alternates (Åström, Hagander and Sternby 1984). So
-/// the exact inverse is used only where what is left of that alternation stays within reach of the
-/// operators; see [`Ring::aims`].
+/// the exact inverse is used only where little of that alternation is left; see [`Ring::aims`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring<T> {
     /// The frequency `f` without damping, in Hz; 0 for no ring.
@@ -34,6 +33,8 @@ pub(crate) type Factors<T> = [T; 4];
 pub(crate) struct Aims<X> {
     /// The input that gives the target in this sample.
     pub(crate) exact: X,
+    /// The input that gives the target nearly, and ends the alternation of the exact one.
+    pub(crate) soft: X,
     /// The input that leads towards the target without swinging about it.
     pub(crate) calm: X,
     /// The inputs between which the exact inverse alternates afterwards, if the target goes on as
@@ -45,6 +46,7 @@ impl<X: Copy> Aims<X> {
     pub(crate) fn map<Y>(self, turn: impl Fn(X) -> Y) -> Aims<Y> {
         Aims {
             exact: turn(self.exact),
+            soft: turn(self.soft),
             calm: turn(self.calm),
             swing: self.swing.map(turn),
         }
@@ -65,6 +67,10 @@ impl<T: Real> Ring<T> {
     /// the input that follows the target by `(b/(1−a)) δ`, ever less: that is the swing. Where it
     /// stays within reach, a target that goes on steadily is met in every later sample too.
     ///
+    /// *Soft* gives up a little of the target for the velocity, `min (y − y*)² + ½ (1 − a) δ²`: a
+    /// change of the input moves both terms by about as much. So the alternation ends within a few
+    /// samples.
+    ///
     /// *Calm* damps the velocity critically, `u = y + 2ζ ẏ/ω + 2(1 − ζ)(ẏ/ω − v)`, but changes the
     /// input by no more than what makes the energy `(y − y*)² + (v − ẏ*/ω)²` at the end of the
     /// sample least. The energy is convex in the input. So for a target at rest it never grows, also
@@ -75,12 +81,15 @@ impl<T: Real> Ring<T> {
         if is_rest(factors) {
             return Aims {
                 exact: y,
+                soft: y,
                 calm: y,
                 swing: [y; 2],
             };
         }
         let exact = self.inverse(memory, factors, y);
         let rate = (y - wanted) / turn;
+        let half = T::HALF * b;
+        let soft = at + (y - at - b * v + half * (rate - d * v)) / (gain + half * b);
         let follow = y + (self.damping + self.damping) * rate;
         let off = b / gain * (b * (exact - at) + d * v - rate);
         let swing = off.max(-off);
@@ -90,6 +99,7 @@ impl<T: Real> Ring<T> {
         let damp = (loss + loss) * (rate - v);
         Aims {
             exact,
+            soft,
             calm: follow + damp.clamp(most.min(T::ZERO), most.max(T::ZERO)),
             swing: [follow - swing, follow + swing],
         }

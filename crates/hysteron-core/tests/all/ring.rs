@@ -203,7 +203,7 @@ fn a_target_said_to_be_met_is_met_behind_any_ring() {
         met += followed.met;
         count += followed.samples.len();
     }
-    assert!(met > count / 5 && met < count, "{met} of {count}");
+    assert!(met > count / 10 && met < count, "{met} of {count}");
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_swinging_output_comes_to_rest_at_a_target_and_is_held() {
     }
 }
 
-/// A smooth path whose frequency is a thirtieth to a tenth of the resonance, at steps of 4 to 200 to
+/// A smooth path whose frequency is a fiftieth to a sixteenth of the resonance, at steps of 4 to 200 to
 /// a period of the resonance. From rest on it, it is met in every sample. From any other start the
 /// inverse comes to it.
 #[test]
@@ -239,7 +239,7 @@ fn a_smooth_path_below_the_resonance_is_followed() {
         let turn = factors(stages.rates(dt))[3];
         dt *= (1.5 / turn).min(1.0).max(0.03 / turn);
         let turn = turn.clamp(0.03, 1.5);
-        let each = turn * rng.random_range(0.03..0.1);
+        let each = turn * rng.random_range(0.02..0.06);
         let smooth = |n: usize| 0.5 - 0.3 * (each * n as f64).cos();
         let coming = (60.0 / turn) as usize + 50;
         let shares: Vec<f64> = (0..coming + 1000).map(smooth).collect();
@@ -249,7 +249,7 @@ fn a_smooth_path_below_the_resonance_is_followed() {
         let followed = follow(&mut rng, stages, |_| dt, Some(5), &shares);
         // Calmly it takes the target to go on steadily: it is late by about what the path bends in
         // a period of the resonance, (1 + ωΔ) ÿ/ω².
-        let late = 0.3 * (1.0 + turn) * 0.01 + 0.001;
+        let late = 0.3 * (1.0 + turn) * 0.06 * 0.06 + 0.001;
         for (n, (_, error)) in followed.samples.iter().enumerate().skip(coming) {
             assert!(*error < 2.0 * late, "{seed}, {n}: {error} {turn}");
         }

@@ -40,6 +40,10 @@ const HIGHEST: f64 = 0.45;
 /// From a damping of `1/√2` on there is no resonance. A lag says the same then.
 const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
+/// A ring has to die down within this share of the longest recording. One that goes on is not told
+/// apart from an input that does.
+const DECAYS: f64 = 1.0 / 3.0;
+
 /// Samples that are looked at when frequencies are tried.
 const LOOKED_AT: usize = 50_000;
 
@@ -122,7 +126,9 @@ pub(super) fn find(
         return Ok(None);
     }
     let (constants, targets, _) = search.swung(first, None, &still)?;
-    if !asked && constants[1] >= RESONANT {
+    let [frequency, damping] = constants;
+    let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
+    if !asked && (damping >= RESONANT || decay > DECAYS * clock.longest) {
         return Ok(None);
     }
     let mut recordings = recordings.to_vec();
@@ -164,8 +170,8 @@ impl Search<'_> {
 
     /// The squares that a ring behind these sums leaves at the samples kept.
     fn squares(&self, ring: [f64; 2], sums: &[f64], kept: Option<&[f64]>, most: usize) -> f64 {
-        let below_nyquist = ring[0] * self.clock.step <= HIGHEST;
-        let ring = Resonator::new(self.clock, ring, most).filter(|_| below_nyquist);
+        let told = ring[0] * self.clock.step <= HIGHEST && ring[0] * self.clock.longest >= CYCLES;
+        let ring = Resonator::new(self.clock, ring, most).filter(|_| told);
         let Some(ring) = ring else {
             return f64::INFINITY;
         };
@@ -182,7 +188,7 @@ impl Search<'_> {
         let mut best = (f64::INFINITY, None);
         for n in 0..count {
             self.progress.tell("ring", f64::NAN)?;
-            let frequency = lowest * 10_f64.powf(n as f64 / DECADE);
+            let frequency = lowest * 10_f64.powf((n as f64 + 0.01) / DECADE);
             for damping in DAMPINGS {
                 let ring = [frequency, damping];
                 let squares = self.squares(ring, sums, None, looked);
