@@ -117,7 +117,7 @@ static inline hys_real lag_inverse(const hys_actuator *actuator, const hys_real 
     return rests ? output : (output - memory[LAG_MEMORY] * fade) / (ONE - fade);
 }
 
-/* A ring: output, velocity and the output last wanted; 1 - a, b, d and the angle of a sample. */
+/* A ring: output, velocity and the output last wanted; 1 - a, b, d of a sample. */
 static inline hys_real ring_forward(const hys_actuator *actuator, hys_real *memory, int rests,
                                     hys_real x)
 {
@@ -142,9 +142,9 @@ static inline ring_aims aims_of_ring(const hys_actuator *actuator, const hys_rea
                                      int rests, hys_real y)
 {
     const hys_real *factor = actuator->factors + RING_FACTORS, *ring = memory + RING_MEMORY;
-    hys_real gain = factor[0], b = factor[1], d = factor[2], turn = factor[3];
+    hys_real gain = factor[0], b = factor[1], d = factor[2];
     hys_real at = ring[0], v = ring[1], wanted = ring[2], zeta;
-    hys_real rate, half, follow, off, swing, least, most, loss, damp;
+    hys_real rise, still, all, rate, half, follow, off, swing, least, most, loss, damp;
     ring_aims aims;
     if (rests) {
         aims.exact = aims.soft = aims.calm = aims.low = aims.high = y;
@@ -152,10 +152,14 @@ static inline ring_aims aims_of_ring(const hys_actuator *actuator, const hys_rea
     }
     zeta = actuator->ring_damping.numbers[0];
     aims.exact = at + (y - at - b * v) / gain;
-    rate = (y - wanted) / turn;
+    /* What a sampled ramp of this slope has: its velocity at the samples, and its input. */
+    rise = y - wanted;
+    still = ONE - d;
+    all = gain * still + b * b;
+    rate = rise * b / all;
+    follow = wanted + rise * still / all;
     half = (hys_real)0.5 * b;
     aims.soft = at + (y - at - b * v + half * (rate - d * v)) / (gain + half * b);
-    follow = y + (zeta + zeta) * rate;
     off = b / gain * (b * (aims.exact - at) + d * v - rate);
     swing = hys_max(off, -off);
     least = at + (gain * (y - at - b * v) + b * (rate - d * v)) / (gain * gain + b * b);

@@ -32,7 +32,7 @@
 /* Stages behind the operators: how many there are, numbers that they remember, and factors. */
 #define HYS_BEHIND 4
 #define HYS_BEHIND_MEMORY 8
-#define HYS_BEHIND_FACTORS 9
+#define HYS_BEHIND_FACTORS 8
 
 /* Numbers that hys_actuator_save writes. */
 #define HYS_STAGE_NUMBERS (2 + HYS_BEHIND_MEMORY)

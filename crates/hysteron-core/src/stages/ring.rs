@@ -25,8 +25,9 @@ pub struct Ring<T> {
 
 /// Output, velocity over `ω`, and the output that was last wanted: that of a sample forward.
 pub(crate) type Memory<T> = [T; 3];
-/// `1 − a`, `b`, `d` of the step, and `ωΔ`. All zeros at rest.
-pub(crate) type Factors<T> = [T; 4];
+/// `1 − a`, `b`, `d` of the step: with the input at zero, `y ← a y + b v` and `v ← d v − b y`. All
+/// zeros at rest.
+pub(crate) type Factors<T> = [T; 3];
 
 /// What the inverse of a ring may ask of the stages before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,13 +72,13 @@ impl<T: Real> Ring<T> {
     /// change of the input moves both terms by about as much. So the alternation ends within a few
     /// samples.
     ///
-    /// *Calm* damps the velocity critically, `u = y + 2ζ ẏ/ω + 2(1 − ζ)(ẏ/ω − v)`, but changes the
+    /// *Calm* damps the velocity critically, by `2(1 − ζ)(ẏ*/ω − v)`, but changes the
     /// input by no more than what makes the energy `(y − y*)² + (v − ẏ*/ω)²` at the end of the
     /// sample least. The energy is convex in the input. So for a target at rest it never grows, also
     /// where the operators limit the input: nothing runs away.
     pub(crate) fn aims(&self, memory: &Memory<T>, factors: &Factors<T>, y: T) -> Aims<T> {
         let &[at, v, wanted] = memory;
-        let &[gain, b, d, turn] = factors;
+        let &[gain, b, d] = factors;
         if is_rest(factors) {
             return Aims {
                 exact: y,
@@ -87,10 +88,12 @@ impl<T: Real> Ring<T> {
             };
         }
         let exact = self.inverse(memory, factors, y);
-        let rate = (y - wanted) / turn;
+        // What a sampled ramp of this slope has: its velocity at the samples, and its input.
+        let (rise, still) = (y - wanted, T::ONE - d);
+        let all = gain * still + b * b;
+        let (rate, follow) = (rise * b / all, wanted + rise * still / all);
         let half = T::HALF * b;
         let soft = at + (y - at - b * v + half * (rate - d * v)) / (gain + half * b);
-        let follow = y + (self.damping + self.damping) * rate;
         let off = b / gain * (b * (exact - at) + d * v - rate);
         let swing = off.max(-off);
         let least = at + (gain * (y - at - b * v) + b * (rate - d * v)) / (gain * gain + b * b);
@@ -107,7 +110,7 @@ impl<T: Real> Ring<T> {
 }
 
 /// Whether nothing of a past is left. In a step without length `d` is one.
-fn is_rest<T: Real>(&[gain, _, d, _]: &Factors<T>) -> bool {
+fn is_rest<T: Real>(&[gain, _, d]: &Factors<T>) -> bool {
     gain == T::ZERO && d == T::ZERO
 }
 
@@ -170,7 +173,7 @@ impl<T: Real> Stage<T> for Ring<T> {
         let fade = (-(zeta * turn)).exp();
         if fade == T::ZERO {
             // The sine of an angle beyond all numbers is none.
-            return [T::ONE, T::ZERO, T::ZERO, turn];
+            return [T::ONE, T::ZERO, T::ZERO];
         }
         let root = ((T::ONE - zeta) * (T::ONE + zeta)).sqrt();
         let angle = root * turn;
@@ -181,7 +184,7 @@ impl<T: Real> Stage<T> for Ring<T> {
         let half = (T::HALF * angle).sin();
         // `1 − a` without the difference of two numbers near one.
         let gain = fade * (half * half + half * half - zeta * sine) - (-(zeta * turn)).exp_m1();
-        [gain, fade * sine, fade * (angle.cos() - zeta * sine), turn]
+        [gain, fade * sine, fade * (angle.cos() - zeta * sine)]
     }
 
     fn rest(&self, x: T) -> Memory<T> {
@@ -190,7 +193,7 @@ impl<T: Real> Stage<T> for Ring<T> {
 
     fn forward(&self, memory: &mut Memory<T>, factors: &Factors<T>, x: T) -> T {
         let &[at, v, _] = &*memory;
-        let &[gain, b, d, _] = factors;
+        let &[gain, b, d] = factors;
         let gap = x - at;
         let y = at + (gain * gap + b * v);
         *memory = [y, b * gap + d * v, y];
@@ -198,7 +201,7 @@ impl<T: Real> Stage<T> for Ring<T> {
     }
 
     fn inverse(&self, &[at, v, _]: &Memory<T>, factors: &Factors<T>, y: T) -> T {
-        let &[gain, b, ..] = factors;
+        let &[gain, b, _] = factors;
         match is_rest(factors) {
             true => y,
             false => at + (y - at - b * v) / gain,
@@ -211,7 +214,7 @@ impl<T: Real> Stage<T> for Ring<T> {
 
     fn drift(&self, factors: &[T]) -> T {
         // The square of what is left of a past is `a d + b²`; what two numbers remember is rounded.
-        let &[gain, b, d, ..] = factors else {
+        let &[gain, b, d] = factors else {
             return T::ZERO;
         };
         T::from_index(8) / (T::ONE - ((T::ONE - gain) * d + b * b))

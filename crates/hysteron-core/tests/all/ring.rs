@@ -3,7 +3,7 @@
 
 use crate::common::{build, plane, rng, weights};
 use hysteron_core::{
-    Behind, Operator, Plane, Rates, Real, Ring, Sample, StageState, Stages, Status, Target, Wanted,
+    Behind, Operator, Plane, Ring, Sample, StageState, Stages, Status, Target, Wanted,
 };
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -28,10 +28,11 @@ fn ringing(frequency: f64, damping: f64) -> Stages<'static, f64> {
     }
 }
 
-/// Those of the ring: `1 − a`, `b`, `d`, `ωΔ`.
-fn factors<T: Real>(rates: Rates<T>) -> [T; 4] {
-    let numbers = rates.to_numbers();
-    let [.., gain, b, d, turn] = numbers;
+/// Those of the ring: `1 − a`, `b`, `d`, and the angle `ωΔ` of the step.
+fn factors(stages: &Stages<'_, f64>, dt: f64) -> [f64; 4] {
+    let numbers = stages.rates(dt).to_numbers();
+    let [.., gain, b, d] = numbers;
+    let turn = std::f64::consts::TAU * stages.behind.ring.frequency * dt;
     [gain, b, d, turn]
 }
 
@@ -39,7 +40,7 @@ fn factors<T: Real>(rates: Rates<T>) -> [T; 4] {
 fn the_zero_of_a_sample_is_within_the_unit_circle() {
     for seed in 0..20_000 {
         let (stages, dt) = any(&mut rng(seed));
-        let [gain, b, d, turn] = factors(stages.rates(dt));
+        let [gain, b, d, turn] = factors(&stages, dt);
         let fade = (-stages.behind.ring.damping * turn).exp();
         // `ad + b² = e^(−2ζωΔ)`: the determinant of the step.
         let left = (1.0 - gain) * d + b * b;
@@ -65,7 +66,7 @@ fn two_steps_are_one_of_both_lengths() {
         let [.., y, v, _] = whole;
         let [.., y2, v2, _] = parts;
         // The difference `dt − part` is rounded.
-        let turn = factors(stages.rates(dt))[3];
+        let turn = factors(&stages, dt)[3];
         let rounding = 1e-13 * (1.0 + turn);
         assert!(
             (y - y2).abs() < rounding && (v - v2).abs() < rounding,
@@ -79,7 +80,7 @@ fn extreme_steps_are_numbers() {
     for frequency in [1e-9, 1.0, 1e9] {
         for damping in [1e-4, 0.5, 1.0 - 1e-16, 1.0] {
             for dt in [0.0, 1e-300, 1e-9, 1.0, 1e9, 1e300] {
-                let numbers = factors(ringing(frequency, damping).rates(dt));
+                let numbers = factors(&ringing(frequency, damping), dt);
                 let fine = numbers[..3].iter().all(|v| v.abs() <= 2.0);
                 assert!(fine, "{frequency} {damping} {dt}: {numbers:?}");
             }
@@ -212,7 +213,7 @@ fn a_swinging_output_comes_to_rest_at_a_target_and_is_held() {
         let mut rng = rng(seed);
         let (stages, mut dt) = any(&mut rng);
         // Beyond the Nyquist frequency one input per sample cannot damp all of it.
-        let turn = factors(stages.rates(dt))[3];
+        let turn = factors(&stages, dt)[3];
         dt *= f64::min(1.0, 2.0 / turn);
         let turn = f64::min(turn, 2.0);
         let share = rng.random_range(0.02..0.98);
@@ -236,7 +237,7 @@ fn a_smooth_path_below_the_resonance_is_followed() {
     for seed in 0..500 {
         let mut rng = rng(seed);
         let (stages, mut dt) = any(&mut rng);
-        let turn = factors(stages.rates(dt))[3];
+        let turn = factors(&stages, dt)[3];
         dt *= (1.5 / turn).min(1.0).max(0.03 / turn);
         let turn = turn.clamp(0.03, 1.5);
         let each = turn * rng.random_range(0.02..0.06);

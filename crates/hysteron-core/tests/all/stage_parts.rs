@@ -99,7 +99,6 @@ fn rates_are_exponentials() {
             of(0.3),
             0.0,
             0.0,
-            0.0,
             0.0
         ]
     );

@@ -300,19 +300,37 @@ impl<'m> Chain<'m> {
         let [y0, v0] = none;
         let [gain, b] = [one[0] - y0, one[1] - v0];
         let exact = (wanted - y0) / gain;
-        let rate = (wanted - memory.wanted) / turn;
-        let follow = wanted + 2.0 * zeta * rate;
+        // A ramp of this slope, at the samples: `v = d v + b (u − y)` and `y + rise = y + (1 − a)
+        // (u − y) + b v`, where `d` is how much of the velocity is left.
+        let d = self.left(turn, zeta);
+        let rise = wanted - memory.wanted;
+        let rate = rise / (b + gain * (1.0 - d) / b);
+        let follow = memory.wanted + rate * (1.0 - d) / b;
         let swing = (b / gain * (v0 + b * exact - rate)).abs();
         if [exact, follow - swing, follow + swing]
             .into_iter()
             .all(reach)
         {
-            return before(exact);
+            let alternates = before(follow + swing) - before(follow - swing);
+            if alternates <= (on - off) / 128.0 {
+                return before(exact);
+            }
+            // A little of the target for the velocity: the least of `(y − y*)² + (1 − a) δ²/2`.
+            let weight = 0.5 * gain;
+            let soft = gain * (wanted - y0) + weight * b * (rate - v0);
+            return before(soft / (gain * gain + weight * b * b));
         }
         // Where the energy of what is left is least.
         let least = (gain * (wanted - y0) + b * (rate - v0)) / (gain * gain + b * b);
         let damped = follow + 2.0 * (1.0 - zeta) * (rate - v);
         before(damped.clamp(follow.min(least), follow.max(least)))
+    }
+
+    /// How much of a velocity of the ring is left after a step.
+    fn left(&self, turn: f64, zeta: f64) -> f64 {
+        let root = (1.0 - zeta * zeta).sqrt();
+        let (sin, cos) = (root * turn).sin_cos();
+        (-zeta * turn).exp() * (cos - zeta / root * sin)
     }
 
     /// Curve, creep, lag and ring for the operators' `h`.

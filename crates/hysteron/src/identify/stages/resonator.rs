@@ -83,7 +83,7 @@ impl<'a> Resonator<'a> {
             return None;
         }
         let factors = |dt: f64| {
-            let [.., gain, b, d, _] = stages.rates(dt).to_numbers();
+            let [.., gain, b, d] = stages.rates(dt).to_numbers();
             [gain, b, d]
         };
         let usual = factors(clock.step);
