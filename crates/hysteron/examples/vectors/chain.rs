@@ -304,8 +304,8 @@ impl<'m> Chain<'m> {
         // (u − y) + b v`, where `d` is how much of the velocity is left.
         let d = self.left(turn, zeta);
         let rise = wanted - memory.wanted;
-        let rate = rise / (b + gain * (1.0 - d) / b);
-        let follow = memory.wanted + rate * (1.0 - d) / b;
+        let rate = rise * b / (b * b + gain * (1.0 - d));
+        let follow = memory.wanted + rise * (1.0 - d) / (b * b + gain * (1.0 - d));
         let swing = (b / gain * (v0 + b * exact - rate)).abs();
         if [exact, follow - swing, follow + swing]
             .into_iter()
