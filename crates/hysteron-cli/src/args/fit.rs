@@ -89,8 +89,8 @@ pub(crate) struct FitHow {
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
     /// What happens behind the operators in time: a ring, which is a resonance of the second order,
-    /// or a lag, which is one of the first. `auto` looks for a ring where there is a --time, no load
-    /// and neither --creep nor --lag
+    /// or a lag, which is of the first. `auto` looks for a ring in recordings with time and without a
+    /// load, unless creep or a lag is asked for
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) dynamics: Dynamics,
     /// Output curve behind the operators: `auto` (where it predicts parts of the recordings left
