@@ -7,7 +7,7 @@
 %
 %   Y = SF_MKP(..., NAME, VALUE, ...) with the options
 %       'time'       the time of each sample in seconds, not going back, of a model with a thermal
-%                    body, creep or a lag. An input is the one held since the sample before
+%                    body, creep, lag or ring. An input is the one held since the sample before
 %       'load'       the load of each sample, or one for all, of a model that depends on one
 %       'start'      'fitted' (the default), 'off' or 'on': where a FILE starts
 %

@@ -67,7 +67,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         The column of `X` that is the input.
     time_column, load_column : int, optional
         The columns of `X` that are the time, s, and the load. Others are ignored.
-    load_law, load_degree, spacing, creep, lag, curve, thermal
+    load_law, load_degree, spacing, creep, lag, dynamics, curve, thermal
         As for `pyhysteron.fit`.
 
     Attributes
@@ -111,6 +111,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         spacing: Literal["auto", "uniform"] = "auto",
         creep: int | Literal["auto", "off"] = "off",
         lag: float | Literal["auto", "off"] = "off",
+        dynamics: Literal["auto", "off", "lag", "ring"] = "auto",
         curve: int | Literal["auto", "off"] = "off",
         thermal: Literal["first-order", True, False] | None = None,
     ) -> None:
@@ -134,6 +135,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.spacing = spacing
         self.creep = creep
         self.lag = lag
+        self.dynamics = dynamics
         self.curve = curve
         self.thermal = thermal
 

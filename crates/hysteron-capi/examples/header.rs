@@ -16,8 +16,8 @@ const ABOUT: &str = "\
  * A pointer points to as many elements as the count beside it says, one where there is no count. No
  * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
  *
- * A model may have stages around its operators: a thermal body, a load, creep, a lag. Samples then
- * need the time since the sample before, or a load. The functions whose names end with `_in` take
+ * A model may have stages around its operators: a thermal body, a load, creep, a lag, a ring.
+ * Samples then need the time since the sample before, or a load. The functions whose names end with `_in` take
  * both; NAN stands for one that is not given. The `input` of a sample is the one held since the
  * sample before.
  *

@@ -3,7 +3,7 @@
 use hysteron_core::STATE_NUMBERS;
 
 /// How many numbers the stages behind the operators remember.
-pub const HYSTERON_BEHIND: usize = 5;
+pub const HYSTERON_BEHIND: usize = 8;
 
 const _: () = assert!(2 + HYSTERON_BEHIND == STATE_NUMBERS);
 

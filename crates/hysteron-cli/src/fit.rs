@@ -5,8 +5,9 @@ mod lines;
 use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, prepare, progress, recording};
 use hysteron::{
-    Advice, Choice, Columns, Fit, FitOptions, FitSummary, HeldOut, HoldOut, LoadLaw, Model,
-    Preparation, Progress, RateDependence, Recording, Sign, Solver, Spacing, Step, prior_of_fleet,
+    Advice, Choice, Columns, Dynamics, Fit, FitOptions, FitSummary, HeldOut, HoldOut, LoadLaw,
+    Model, Preparation, Progress, RateDependence, Recording, Sign, Solver, Spacing, Step,
+    prior_of_fleet,
 };
 use lines::to_text;
 use serde_json::json;
@@ -159,6 +160,12 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
             Step::Auto => Choice::Auto,
             Step::Off => Choice::Fixed(0.0),
             Step::Value(lag) => Choice::Fixed(lag),
+        },
+        dynamics: match args.dynamics {
+            args::Dynamics::Auto => Dynamics::Auto,
+            args::Dynamics::Off => Dynamics::Off,
+            args::Dynamics::Lag => Dynamics::Lag,
+            args::Dynamics::Ring => Dynamics::Ring,
         },
         curve: count("curve", args.curve)?,
         ..FitOptions::plain()

@@ -11,8 +11,8 @@ mod sealed {
 
 /// A floating-point number: `f32` or `f64`, nothing else (the trait is sealed).
 ///
-/// It has only what the core needs, without `std`. The exponential is that of `libm`, which gives the
-/// same bits on every platform.
+/// It has only what the core needs, without `std`. Exponential, sine and root are those of `libm`,
+/// which gives the same bits on every platform.
 ///
 /// [`Real::max`], [`Real::min`] and [`Real::clamp`] are for generic code. On a value whose type is
 /// known to be `f32` or `f64`, the inherent methods of the same name are called instead. The two
@@ -37,6 +37,8 @@ pub trait Real:
     const ONE: Self;
     /// One half.
     const HALF: Self;
+    /// A whole turn, 2π.
+    const TWO_PI: Self;
     /// Positive infinity.
     const INFINITY: Self;
     /// Distance from one to the next larger number: 2⁻²³ for `f32`, 2⁻⁵² for `f64`.
@@ -64,6 +66,14 @@ pub trait Real:
 
     /// `e^self`.
     fn exp(self) -> Self;
+    /// `e^self − 1`, with all digits where that is small.
+    fn exp_m1(self) -> Self;
+    /// The sine of an angle in radians.
+    fn sin(self) -> Self;
+    /// The cosine of an angle in radians.
+    fn cos(self) -> Self;
+    /// The square root.
+    fn sqrt(self) -> Self;
 
     /// The larger of two numbers. `other` where they are equal or one of them is NaN.
     #[inline(always)]
@@ -86,11 +96,12 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ty, $round:expr, $exp:path, $largest:expr) => {
+    ($t:ident, $round:expr, $largest:expr, $($function:ident = $libm:path),+) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
+            const TWO_PI: Self = core::$t::consts::TAU;
             const INFINITY: Self = <$t>::INFINITY;
             const EPSILON: Self = <$t>::EPSILON;
             const LARGEST: Self = $largest;
@@ -134,12 +145,32 @@ macro_rules! real {
                 <$t>::is_finite(self)
             }
 
-            #[inline]
-            fn exp(self) -> Self {
-                $exp(self)
-            }
+            $(
+                #[inline]
+                fn $function(self) -> Self {
+                    $libm(self)
+                }
+            )+
         }
     };
 }
-real!(f32, 12_582_912.0, libm::expf, 1e15); // 1.5 · 2²³
-real!(f64, 6_755_399_441_055_744.0, libm::exp, 1e140); // 1.5 · 2⁵²
+real!(
+    f32,
+    12_582_912.0, // 1.5 · 2²³
+    1e15,
+    exp = libm::expf,
+    exp_m1 = libm::expm1f,
+    sin = libm::sinf,
+    cos = libm::cosf,
+    sqrt = libm::sqrtf
+);
+real!(
+    f64,
+    6_755_399_441_055_744.0, // 1.5 · 2⁵²
+    1e140,
+    exp = libm::exp,
+    exp_m1 = libm::expm1,
+    sin = libm::sin,
+    cos = libm::cos,
+    sqrt = libm::sqrt
+);

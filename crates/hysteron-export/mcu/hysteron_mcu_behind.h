@@ -9,10 +9,13 @@
 #include "hysteron_mcu_stages.h"
 
 /* The stages by their numbers, and where their memory and factors begin. */
-enum { CURVE = 0, CREEP = 1, LAG = 2 };
-enum { CREEP_MEMORY = 0, LAG_MEMORY = 4 };
-enum { CREEP_FACTORS = 0, LAG_FACTORS = 4 };
+enum { CURVE = 0, CREEP = 1, LAG = 2, RING = 3 };
+enum { CREEP_MEMORY = 0, LAG_MEMORY = 4, RING_MEMORY = 5 };
+enum { CREEP_FACTORS = 0, LAG_FACTORS = 4, RING_FACTORS = 5 };
 enum { MOST_CREEP = 4 };
+
+/* From what to what the exact inverse of a ring may alternate, as a part of the range of sums. */
+#define LITTLE ((hys_real)1 / (hys_real)128)
 
 static inline int is_there(const hys_actuator *actuator, unsigned stage)
 {
@@ -114,6 +117,61 @@ static inline hys_real lag_inverse(const hys_actuator *actuator, const hys_real 
     return rests ? output : (output - memory[LAG_MEMORY] * fade) / (ONE - fade);
 }
 
+/* A ring: output, velocity and the output last wanted; 1 - a, b, d of a sample. */
+static inline hys_real ring_forward(const hys_actuator *actuator, hys_real *memory, int rests,
+                                    hys_real x)
+{
+    const hys_real *factor = actuator->factors + RING_FACTORS;
+    hys_real *ring = memory + RING_MEMORY;
+    hys_real gain = rests ? ZERO : factor[0], b = rests ? ZERO : factor[1];
+    hys_real d = rests ? ZERO : factor[2], at = rests ? x : ring[0], v = rests ? ZERO : ring[1];
+    hys_real gap = x - at;
+    ring[0] = at + (gain * gap + b * v);
+    ring[1] = b * gap + d * v;
+    ring[2] = ring[0];
+    return ring[0];
+}
+
+/* The sums that may be wanted: exact, soft, calm, and the two between which the exact inverse would
+ * alternate afterwards. */
+typedef struct {
+    hys_real exact, soft, calm, low, high;
+} ring_aims;
+
+static inline ring_aims aims_of_ring(const hys_actuator *actuator, const hys_real *memory,
+                                     int rests, hys_real y)
+{
+    const hys_real *factor = actuator->factors + RING_FACTORS, *ring = memory + RING_MEMORY;
+    hys_real gain = factor[0], b = factor[1], d = factor[2];
+    hys_real at = ring[0], v = ring[1], wanted = ring[2], zeta;
+    hys_real rise, still, all, rate, half, follow, off, swing, least, most, loss, damp;
+    ring_aims aims;
+    if (rests) {
+        aims.exact = aims.soft = aims.calm = aims.low = aims.high = y;
+        return aims;
+    }
+    zeta = actuator->ring_damping.numbers[0];
+    aims.exact = at + (y - at - b * v) / gain;
+    /* What a sampled ramp of this slope has: its velocity at the samples, and its input. */
+    rise = y - wanted;
+    still = ONE - d;
+    all = gain * still + b * b;
+    rate = rise * b / all;
+    follow = wanted + rise * still / all;
+    half = (hys_real)0.5 * b;
+    aims.soft = at + (y - at - b * v + half * (rate - d * v)) / (gain + half * b);
+    off = b / gain * (b * (aims.exact - at) + d * v - rate);
+    swing = hys_max(off, -off);
+    least = at + (gain * (y - at - b * v) + b * (rate - d * v)) / (gain * gain + b * b);
+    most = least - follow;
+    loss = ONE - zeta;
+    damp = (loss + loss) * (rate - v);
+    aims.calm = follow + hys_clamp(damp, hys_min(most, ZERO), hys_max(most, ZERO));
+    aims.low = follow - swing;
+    aims.high = follow + swing;
+    return aims;
+}
+
 /* The output for the operators' sum. */
 static inline hys_real behind_forward(hys_actuator_state *state, hys_real x)
 {
@@ -128,11 +186,14 @@ static inline hys_real behind_forward(hys_actuator_state *state, hys_real x)
     if (is_there(actuator, LAG)) {
         x = lag_forward(actuator, state->behind, rests, x);
     }
+    if (is_there(actuator, RING)) {
+        x = ring_forward(actuator, state->behind, rests, x);
+    }
     return x;
 }
 
-/* The operators' sum for an output, from the last stage to the first. */
-static inline hys_real behind_inverse(const hys_actuator_state *state, hys_real y)
+/* The operators' sum for an output of the stages before the ring, from the last to the first. */
+static inline hys_real before_ring_inverse(const hys_actuator_state *state, hys_real y)
 {
     const hys_actuator *actuator = state->actuator;
     int rests = !state->started;
@@ -148,6 +209,37 @@ static inline hys_real behind_inverse(const hys_actuator_state *state, hys_real 
     return y;
 }
 
+/* The operators' sum that is wanted for an output in this sample, where sums reach from `low` to
+ * `high`. Where the exact inverse of a ring would alternate by more than a little, it is led there
+ * softly, and calmly where that would go beyond the range of sums. */
+static inline hys_real behind_inverse(const hys_actuator_state *state, hys_real y, hys_real low,
+                                      hys_real high)
+{
+    const hys_actuator *actuator = state->actuator;
+    ring_aims aims;
+    hys_real exact, from, to, alternates;
+    if (!is_there(actuator, RING)) {
+        return before_ring_inverse(state, y);
+    }
+    aims = aims_of_ring(actuator, state->behind, !state->started, y);
+    exact = before_ring_inverse(state, aims.exact);
+    from = before_ring_inverse(state, aims.low);
+    to = before_ring_inverse(state, aims.high);
+    if (low <= exact && exact <= high && low <= from && from <= high && low <= to && to <= high) {
+        alternates = hys_max(to - from, from - to);
+        return alternates <= (high - low) * LITTLE ? exact : before_ring_inverse(state, aims.soft);
+    }
+    return is_finite(exact) ? before_ring_inverse(state, aims.calm) : exact;
+}
+
+/* Keeps the output that was wanted, from which the next inverse knows how fast the target moves. */
+static inline void keep_wanted(hys_actuator_state *state, hys_real y)
+{
+    if (is_there(state->actuator, RING)) {
+        state->behind[RING_MEMORY + 2] = y;
+    }
+}
+
 /* The steepest slope of the output over the operators' sum in this sample. */
 static inline hys_real behind_steepest(const hys_actuator_state *state)
 {
@@ -159,6 +251,9 @@ static inline hys_real behind_steepest(const hys_actuator_state *state)
     }
     if (is_there(actuator, LAG) && !rests) {
         slope = slope * (ONE - actuator->factors[LAG_FACTORS]);
+    }
+    if (is_there(actuator, RING) && !rests) {
+        slope = slope * actuator->factors[RING_FACTORS];
     }
     return slope;
 }

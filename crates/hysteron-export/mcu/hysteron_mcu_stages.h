@@ -27,14 +27,14 @@
 #include "hysteron_mcu.h"
 
 /* Layout of hys_actuator. Models that were exported for another layout do not compile. */
-#define HYS_STAGES_LAYOUT 4
+#define HYS_STAGES_LAYOUT 5
 
 #define HYS_MOST_PARTS 8
 
 /* Stages behind the operators: how many there are, numbers that they remember, and factors. */
-#define HYS_BEHIND 3
-#define HYS_BEHIND_MEMORY 5
-#define HYS_BEHIND_FACTORS 5
+#define HYS_BEHIND 4
+#define HYS_BEHIND_MEMORY 8
+#define HYS_BEHIND_FACTORS 8
 
 /* Numbers that hys_actuator_save writes. */
 #define HYS_STAGE_NUMBERS (2 + HYS_BEHIND_MEMORY)
@@ -86,6 +86,7 @@ typedef struct {
     hys_list spacing;            /* the K + 1 corners of the grid, ascending */
     hys_list curve_sums, curve_outputs; /* knots of the output curve, ascending */
     hys_list creep;              /* the share of the sum that creeps, of each term */
+    hys_list ring_damping;       /* the damping ratio of a ring */
     hys_list start;              /* turning points that the model starts with */
     const hys_parts *parts;      /* weights that depend on the load; null without */
     unsigned there;              /* a bit for each stage behind the operators, in their order */
@@ -93,7 +94,7 @@ typedef struct {
     hys_real steepest;           /* steepest slope of registration and spacing; 1 without them */
     hys_real ambient, gain;      /* body: temperature at rest without drive, and per unit of it */
     hys_real heating, cooling;   /* body: e^(-dt/tau) */
-    hys_real factors[HYS_BEHIND_FACTORS]; /* e^(-dt/tau) of the stages behind the operators */
+    hys_real factors[HYS_BEHIND_FACTORS]; /* of a sample, of the stages behind the operators */
     hys_real slopes[HYS_BEHIND]; /* the steepest slope at rest of each of them */
     hys_real steepest_behind;    /* and of all of them */
     hys_real size_behind;        /* the size of the numbers that they add to the output's */

@@ -203,7 +203,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     const hys_model *model;
     loaded_axis at;
     from_here from;
-    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets, low, high, most;
+    hys_real off, on, sum, steepest, aim, gain, input, to, size, slack, reached, error, rounding, offsets, low, high, most;
     int found = HYS_LIMITED;
     int code = usable_actuator(state);
     if (code != HYS_OK) {
@@ -236,17 +236,21 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     if (model->kind != RELAY) {
         from.held = hys_clamp(from.held, model->bottom, model->max);
     }
-    aim = behind_inverse(state, inward(state, target - at.offset)) / at.gain;
+    off = own_sum(model, ZERO);
+    on = own_sum(model, model->total);
+    sum = inward(state, target - at.offset);
+    aim = behind_inverse(state, sum, at.gain * off, at.gain * on) / at.gain;
+    steepest = behind_steepest(state);
     if (is_finite(aim)) {
         /* Within so much of the sum, the output stays within its tolerance wherever it is. */
         hys_real within =
-            tolerance == ZERO ? ZERO : tolerance / (behind_steepest(state) * at.gain);
+            tolerance == ZERO ? ZERO : tolerance / (steepest * at.gain);
         code = solve(&state->operators, aim, from.heading, within, &input, &found);
         if (code != HYS_OK) {
             return code;
         }
     } else {
-        /* A lag that cannot move in a sample: stay. */
+        /* A lag or a ring that cannot move in a sample: stay. */
         input = hys_clamp(state->operators.input, model->bottom, model->max);
     }
     to = drive_to(state, &at, &from, input, &size);
@@ -258,13 +262,14 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     if (code != HYS_OK) {
         return code;
     }
-    gain = at.gain * actuator->steepest_behind;
+    keep_wanted(state, sum);
+    gain = at.gain * hys_max(actuator->steepest_behind, steepest);
     rounding = gain * (model->rounding + model->total * (slack / model->step));
     error = hys_max(reached - target, target - reached);
     offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target)
         + actuator->size_behind;
-    low = behind_settled(actuator, at.gain * own_sum(model, ZERO));
-    high = behind_settled(actuator, at.gain * own_sum(model, model->total));
+    low = behind_settled(actuator, at.gain * off);
+    high = behind_settled(actuator, at.gain * on);
     most = (high - low) * THOUSANDTH;
     if (error <= hys_max(tolerance, ZERO) + hys_min(rounding + EIGHT_EPSILON * offsets, most)) {
         found = HYS_REACHED;

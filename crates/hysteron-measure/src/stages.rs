@@ -4,7 +4,7 @@
 use crate::judged::{error, options, read};
 use crate::result::Result;
 use crate::{folder, loads};
-use hysteron::{Auto, Columns, Fit, Policy, Spacing, Start, Status, Surroundings};
+use hysteron::{Auto, Columns, Dynamics, Fit, Policy, Spacing, Start, Status, Surroundings};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
@@ -13,6 +13,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     loads::print(&folder)?;
     spacing(&folder)?;
     valve(&folder)?;
+    ring(&folder)?;
     drive(&folder)
 }
 
@@ -98,6 +99,44 @@ fn valve(folder: &Path) -> Result<()> {
                 error(&model, &recordings[other].1, Start::Unknown)?,
             );
         }
+    }
+    println!();
+    Ok(())
+}
+
+/// A valve that was shaken, and two sines of the same session, which do not excite its resonance.
+fn ring(folder: &Path) -> Result<()> {
+    println!("## A resonance, found on one recording and used on others\n");
+    println!(
+        "The valve with a pseudo-random input rings. Two slow sines of the same session do not show that:\n\
+         their models are the same to the byte with and without `--dynamics auto`. Errors in percent of\n\
+         the range, with a rest before each recording that explains its beginning. *Itself* is a fit to\n\
+         the sine, which is not judged on what it did not see. The last row of both sines is a jump,\n\
+         which only a ring follows.\n"
+    );
+    println!("| predicted | without | ring | itself | ring found |");
+    println!("| --- | ---: | ---: | ---: | --- |");
+    let columns = Columns {
+        time: Some("time_s"),
+        ..Columns::new("voltage_V", "position")
+    };
+    let shaken = read(folder, "valve_prbn_1.csv", columns)?;
+    let fit = || Fit::new().bootstrap(0);
+    let still = fit().dynamics(Dynamics::Off).run(&shaken)?;
+    let ringing = fit().run(&shaken)?;
+    let constants = ringing.constants();
+    let number = |name| constants.get(name).first().copied().unwrap_or(f64::NAN);
+    for name in ["valve_prbn_1", "valve_sine100_1", "valve_sine50_1"] {
+        let recording = read(folder, &format!("{name}.csv"), columns)?;
+        let itself = fit().run(&recording)?;
+        println!(
+            "| {name} | {:.2} | {:.2} | {:.2} | {:.0} Hz, damping {:.3} |",
+            error(&still, &recording, Start::Rest)?,
+            error(&ringing, &recording, Start::Rest)?,
+            error(&itself, &recording, Start::Rest)?,
+            number("ring_frequency"),
+            number("ring_damping"),
+        );
     }
     println!();
     Ok(())

@@ -9,7 +9,8 @@ use crate::model::{Model, sign_of};
 use crate::prior::WeightPrior;
 use crate::progress::with_progress;
 use hysteron::{
-    Auto, Candidates, Choice, Fit, FitOptions, HeldOut, HoldOut, LoadLaw, Smooth, Solver, Spacing,
+    Auto, Candidates, Choice, Dynamics, Fit, FitOptions, HeldOut, HoldOut, LoadLaw, Smooth, Solver,
+    Spacing,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -71,6 +72,11 @@ use pyo3::types::{PyDict, PyString};
 /// lag : float, 'auto' or 'off'
 ///     Time constant of a lag after the operators, s, from 0 on; 'auto' as for `creep`. Needs
 ///     `time`.
+/// dynamics : {'auto', 'off', 'lag', 'ring'}
+///     What happens behind the operators in time. 'auto': a ring, which is a resonance of the second
+///     order, where `time` is given and the recording excites one that predicts parts left out;
+///     nothing where there is a load, or `creep` or `lag` is asked for. 'lag' as ``lag='auto'``.
+///     'ring': the best ring, excited or not; needs `time`.
 /// curve : int, 'auto' or 'off'
 ///     Pieces of an output curve behind the operators, up to 100. 'auto' takes a curve only where it
 ///     predicts parts of the recordings that were left out.
@@ -127,7 +133,7 @@ use pyo3::types::{PyDict, PyString};
 #[pyo3(signature = (
     recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None,
     load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', creep='off', lag='off', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -255,6 +261,7 @@ pub(crate) fn fit_with(
     let defaults = FitOptions {
         robust: true,
         spacing: Spacing::Auto,
+        dynamics: Dynamics::Auto,
         ..FitOptions::plain()
     };
     let names = [names, &STAGES[..]].concat();
@@ -353,6 +360,7 @@ fn fit_options(
                 let seconds = |value: &_| named("lag", "a number, 'auto' or 'off'", value);
                 options.lag = stage(&name, &value, 0.0, seconds)?;
             }
+            "dynamics" => options.dynamics = choice("dynamics", &text()?, &DYNAMICS)?,
             "curve" => {
                 let pieces =
                     |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.convert("curve");
@@ -378,7 +386,16 @@ const OPTIONS: [&str; 10] = [
 ];
 
 /// The options of the stages around the operators, which only `fit` has.
-const STAGES: [&str; 6] = ["load_law", "robust", "spacing", "creep", "lag", "curve"];
+const STAGES: [&str; 7] = [
+    "load_law", "robust", "spacing", "creep", "lag", "dynamics", "curve",
+];
+
+const DYNAMICS: [(&str, Dynamics); 4] = [
+    ("auto", Dynamics::Auto),
+    ("off", Dynamics::Off),
+    ("lag", Dynamics::Lag),
+    ("ring", Dynamics::Ring),
+];
 
 const LAWS: [(&str, LoadLaw); 3] = [
     ("auto", LoadLaw::Auto),

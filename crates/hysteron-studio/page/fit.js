@@ -8,7 +8,8 @@ const FIRST = ["levels", "smooth", "spacing", "start"];
 /** Options that are one of a few words. */
 const WORDS = /** @type {Record<string, string[]>} */ ({
   spacing: ["auto", "uniform"], start: ["auto", "off", "on", "rest", "unknown"], operator: ["mkp", "kp", "relay"], solver: ["nnls", "ols"],
-  sign: ["", "positive", "negative"], robust: ["auto", "off"], load_law: ["auto", "shift", "weights"], thermal: ["", "first-order"],
+  sign: ["", "positive", "negative"], robust: ["auto", "off"], load_law: ["auto", "shift", "weights"],
+  dynamics: ["auto", "off", "lag", "ring"], thermal: ["", "first-order"],
 });
 
 /**

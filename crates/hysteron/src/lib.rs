@@ -78,9 +78,9 @@ pub use hysteron_core::{
     Outcome, Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
-    AGAINST_INPUT, Advice, Auto, Candidates, Choice, FIT_OPTIONS, Fit, FitOption, FitOptions,
-    LeftOut, LoadLaw, Spacing, WeightPrior, advice, cross_validate, excitation, left_out, plane_of,
-    usual_start, way_against_input,
+    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Dynamics, FIT_OPTIONS, Fit, FitOption,
+    FitOptions, LeftOut, LoadLaw, Spacing, WeightPrior, advice, cross_validate, excitation,
+    left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,

@@ -237,7 +237,7 @@ fn forged_bytes_do_no_harm() {
         assert!(accepted > 10, "{accepted}");
         // More turning points than any run leaves, nested in one cell.
         let count: u32 = if cfg!(miri) { 100 } else { 10_000 };
-        let mut many = words[..21].to_vec();
+        let mut many = words[..24].to_vec();
         many.push(u64::from(count));
         many.extend((0..count).map(|n| {
             let away = 0.4 * f64::from(count - n) / f64::from(count);

@@ -88,6 +88,11 @@ pub(crate) struct FitHow {
     /// Lag of the output: `auto` (as for --creep), `off`, or its time constant in s. Needs --time
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
+    /// What happens behind the operators in time: a ring, which is a resonance of the second order,
+    /// or a lag, which is of the first. `auto` looks for a ring in recordings with time and without a
+    /// load, unless creep or a lag is asked for
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) dynamics: Dynamics,
     /// Output curve behind the operators: `auto` (where it predicts parts of the recordings left
     /// out), `off`, or the number of pieces, up to 100
     #[arg(long, value_name = "N", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
@@ -105,7 +110,7 @@ pub(crate) struct FitHow {
     /// say what a short recording does not. Plane, levels, spacing, operator and sign are theirs
     #[arg(long, value_name = "MODELS", conflicts_with_all = [
         "levels", "range", "smooth", "ridge", "spacing", "operator", "sign", "offset", "thermal",
-        "load", "creep", "lag", "curve", "bootstrap",
+        "load", "creep", "lag", "dynamics", "curve", "bootstrap",
     ])]
     pub(crate) prior: Option<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:

@@ -120,6 +120,18 @@ pub(crate) enum Spacing {
     Auto,
 }
 
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Dynamics {
+    /// A ring where the recording excites one and it predicts parts left out; else nothing
+    Auto,
+    /// Nothing
+    Off,
+    /// As --lag auto
+    Lag,
+    /// The best ring, excited or not
+    Ring,
+}
+
 /// The order of the weights in the load, or the choice of one.
 #[derive(Clone, Copy)]
 pub(crate) enum Degree {

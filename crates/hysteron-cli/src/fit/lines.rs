@@ -1,5 +1,6 @@
 //! What `fit` says of a model, line by line.
 
+use crate::args::Dynamics;
 use crate::{args, text};
 use hysteron::{Criterion, FirstOrder, FitSummary, Model, Smooth, Step, Validation};
 
@@ -34,6 +35,7 @@ pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> Stri
     lines.extend(model.thermal.as_ref().map(thermal_line));
     lines.extend(load_line(model));
     lines.extend(after_line(model, args));
+    lines.extend(ring_line(model, args));
     lines.extend(curve_line(model, args));
     lines.extend(start_line(fit));
     lines.extend(prior_line(fit));
@@ -172,10 +174,32 @@ fn curve_line(model: &Model, args: &args::Fit) -> Option<String> {
     }
 }
 
+/// The ring of the output, where there is one.
+fn ring_line(model: &Model, args: &args::Fit) -> Option<String> {
+    let constants = model.constants();
+    let [frequency, damping] = ["ring_frequency", "ring_damping"].map(|name| constants.get(name));
+    let (&[frequency], &[damping]) = (frequency, damping) else {
+        let asked = args.how.dynamics == Dynamics::Ring;
+        return asked.then(|| "no ring: recordings with a load get none".into());
+    };
+    let mut line = format!(
+        "rings at {} Hz, with a damping of {}",
+        text::number(frequency),
+        text::number(damping)
+    );
+    let report = model.fit.as_ref().and_then(|fit| fit.other.get("ring"));
+    let error = |name| report?.get(name)?.as_f64();
+    if let (Some(without), Some(with)) = (error("without"), error("with")) {
+        line += &format!(": parts left out are predicted to {with:.2} % instead of {without:.2} %");
+    }
+    Some(line)
+}
+
 /// What happens after the operators; said where it was asked for.
 fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
     let (creep, lag) = (model.creep(), model.lag());
-    let asked = args.how.creep != Step::Off || args.how.lag != Step::Off;
+    let lagging = args.how.lag != Step::Off || args.how.dynamics == Dynamics::Lag;
+    let asked = args.how.creep != Step::Off || lagging;
     let mut said = Vec::new();
     for term in &creep {
         said.push(format!(

@@ -7,10 +7,11 @@
 use crate::scalar::Real;
 use crate::stages::constant::{Constants, Declared};
 use crate::stages::stage::Stage;
-use crate::stages::{creep, curve, lag};
+use crate::stages::{creep, curve, lag, ring};
 use creep::Creep;
 use curve::Curve;
 use lag::Lag;
+use ring::{Aims, Ring};
 
 /// The inverse of the stages named, from the last to the first.
 macro_rules! back {
@@ -257,5 +258,30 @@ behind! {
         curve: Curve<'a, T>,
         creep: Creep<'a, T>,
         lag: Lag<T>,
+        ring: Ring<T>,
+    }
+}
+
+impl<T: Real> Behind<'_, T> {
+    /// The sums that may be wanted for the output `y`, where a ring is the last stage; `None`
+    /// without one. Factors as for [`Self::forward`].
+    pub(crate) fn aims(&self, memory: &Memory<T>, factors: &Factors<T>, y: T) -> Option<Aims<T>> {
+        if !self.ring.is_there() {
+            return None;
+        }
+        let before = Self {
+            ring: Ring::NONE,
+            ..*self
+        };
+        let aims = self.ring.aims(&memory.ring, &factors.ring, y);
+        Some(aims.map(|x| before.inverse(memory, factors, x)))
+    }
+
+    /// Keeps the output that was wanted, from which the next inverse knows how fast the target
+    /// moves.
+    pub(crate) fn keep_wanted(&self, memory: &mut Memory<T>, y: T) {
+        if self.ring.is_there() {
+            memory.ring[2] = y;
+        }
     }
 }

@@ -52,6 +52,8 @@ pub enum Unit {
     One,
     /// Seconds.
     Second,
+    /// Cycles a second.
+    Hertz,
     /// The unit of the input that the operators see: of the temperature, with a body.
     Temperature,
     /// That unit per unit of the drive.
@@ -83,10 +85,16 @@ pub enum Range {
     Time,
     /// A time constant, or 0 for none.
     TimeOrNone,
+    /// A frequency in hertz, within the inverses of time constants.
+    Frequency,
+    /// A damping ratio, from one that rings for some thousand cycles to the critical one. With more
+    /// damping a lag tells the same.
+    Damping,
 }
 
 const FACTOR: usize = 1_000_000;
 const SECONDS: usize = 1_000_000_000;
+const UNDAMPED: usize = 10_000;
 
 impl Range {
     /// Whether a number is in the range. No range has NaN.
@@ -102,7 +110,16 @@ impl Range {
             Self::Factor => within(T::ONE / factor, factor),
             Self::Time => within(T::ONE / seconds, seconds),
             Self::TimeOrNone => value == T::ZERO || Self::Time.has(value),
+            Self::Frequency => Self::Time.has(value),
+            Self::Damping => within(T::ONE / T::from_index(UNDAMPED), T::ONE),
         }
+    }
+
+    /// Whether a constant of this range acts through a step of time alone, so that its factors stand
+    /// for it.
+    #[must_use]
+    pub fn is_timed(self) -> bool {
+        matches!(self, Self::Time | Self::TimeOrNone | Self::Frequency)
     }
 
     /// The range in words, for `f64`.
@@ -115,6 +132,8 @@ impl Range {
             Self::Factor => "numbers from 1e-6 to 1e6",
             Self::Time => "times from 1e-9 s to 1e9 s",
             Self::TimeOrNone => "0, or a time from 1e-9 s to 1e9 s",
+            Self::Frequency => "frequencies from 1e-9 Hz to 1e9 Hz",
+            Self::Damping => "numbers from 1e-4 to 1",
         }
     }
 }
@@ -151,4 +170,10 @@ pub(crate) fn one<T: Copy>(list: &[T]) -> Option<Option<T>> {
 /// outputs: a thousandth.
 pub(super) fn thousandth<T: Real>(range: T) -> T {
     range * (T::ONE / T::from_index(1000))
+}
+
+/// From what to what the exact inverse of a ring may alternate, as a part of the range of sums: so
+/// little that operators and drive hardly notice.
+pub(super) fn little<T: Real>() -> T {
+    T::ONE / T::from_index(128)
 }

@@ -8,7 +8,7 @@ use crate::operator::Operator;
 use crate::scalar::Real;
 use crate::solution::{Solution, Status};
 use crate::stages::chain::{Stages, factors};
-use crate::stages::constant::thousandth;
+use crate::stages::constant::{little, thousandth};
 use crate::stages::loaded::Loaded;
 use crate::stages::state::{Rates, StageState};
 use crate::state::State;
@@ -139,10 +139,11 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
-        let aim = self.aim(memory, rates, loaded, target);
+        let range = model.output_range();
+        let aim = self.aim(memory, rates, loaded, target, range);
         let solution = match aim.output.is_finite() {
             true => inverse.solve(state, aim)?,
-            // A lag in a step without length cannot move: stay.
+            // A lag or a ring in a step without length cannot move: stay.
             false => Solution {
                 input: state.input().clamp(plane.bottom(), plane.max()),
                 status: Status::Limited,
@@ -184,18 +185,20 @@ impl<T: Real> Stages<'_, T> {
             }
         }
         let slack = self.axis.rounding(plane, loaded, size);
+        let steepest = self.behind.steepest(&factors(memory, rates));
         let reached = self
             .step_loaded(model, state, memory, rates, input, loaded)?
             .output;
-        let gain = loaded.gain * self.behind.steepest_at_rest();
+        let sum = self.inward(target.output - loaded.offset);
+        self.behind.keep_wanted(&mut memory.behind, sum);
+        let gain = loaded.gain * self.behind.steepest_at_rest().max(steepest);
         let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));
         let error = (reached - target.output).max(target.output - reached);
         let magnitude = |v: T| v.max(-v);
         let offsets = magnitude(self.offset) + magnitude(loaded.offset) + magnitude(target.output);
         let offsets = offsets + self.behind.size();
         let spread = T::from_index(8) * T::EPSILON * offsets;
-        let (off, on) = model.output_range();
-        let ends = [off, on].map(|sum| self.behind.settled(loaded.gain * sum));
+        let ends = [range.0, range.1].map(|sum| self.behind.settled(loaded.gain * sum));
         let allowed = (rounding + spread).min(thousandth(ends[1] - ends[0]));
         let met = error <= target.tolerance.max(T::ZERO) + allowed;
         let reach = target.tolerance.max(gain * inverse.rounding());
@@ -209,13 +212,16 @@ impl<T: Real> Stages<'_, T> {
         Ok(Solution { input, status })
     }
 
-    /// The operators' sum that gives the target in this sample.
+    /// The operators' sum that gives the target in this sample. Where the exact inverse of a ring
+    /// would alternate by more than a little, it is led there softly, and calmly where that would go
+    /// beyond the range of sums.
     fn aim(
         &self,
         memory: &StageState<T>,
         rates: &Rates<T>,
         loaded: Loaded<T>,
         target: Target<T>,
+        (off, on): (T, T),
     ) -> Target<T> {
         let heading = match (self.falling, target.heading) {
             (true, Some(Direction::Rising)) => Some(Direction::Falling),
@@ -224,7 +230,21 @@ impl<T: Real> Stages<'_, T> {
         };
         let factors = factors(memory, rates);
         let sum = self.inward(target.output - loaded.offset);
-        let h = self.behind.inverse(&memory.behind, &factors, sum);
+        let h = match self.behind.aims(&memory.behind, &factors, sum) {
+            None => self.behind.inverse(&memory.behind, &factors, sum),
+            Some(aims) => {
+                let (low, high) = (loaded.gain * off, loaded.gain * on);
+                let reach = |sum: T| low <= sum && sum <= high;
+                let [from, to] = aims.swing;
+                let little = (to - from).max(from - to) <= (high - low) * little();
+                match reach(aims.exact) && reach(from) && reach(to) {
+                    true if little => aims.exact,
+                    true => aims.soft,
+                    false if aims.exact.is_finite() => aims.calm,
+                    false => aims.exact,
+                }
+            }
+        };
         // Within so much of the sum, the output stays within its tolerance wherever it is.
         let tolerance = match target.tolerance == T::ZERO {
             true => T::ZERO,

@@ -28,6 +28,7 @@ mod loaded;
 mod mix;
 mod parts;
 mod registration;
+mod ring;
 mod stage;
 mod state;
 
@@ -45,4 +46,5 @@ pub use loaded::Loaded;
 pub use mix::mix;
 pub use parts::{MAX_PARTS, Parts, Placed, bernstein};
 pub use registration::Registration;
+pub use ring::Ring;
 pub use state::{RATE_NUMBERS, Rates, STATE_NUMBERS, Sample, StageState};

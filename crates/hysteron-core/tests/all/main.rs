@@ -20,6 +20,7 @@ mod plane;
 mod reached;
 mod refusals;
 mod registration;
+mod ring;
 mod round_trip;
 mod shift;
 mod stage_parts;

@@ -22,6 +22,23 @@ fn line(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     ys[k] + (x - xs[k]) / (xs[k + 1] - xs[k]) * (ys[k + 1] - ys[k])
 }
 
+/// `e^A` of a small matrix: the series for `A/2^12`, squared 12 times.
+fn exponential(a: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let product = |a: [[f64; 2]; 2], b: [[f64; 2]; 2]| {
+        let entry = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j];
+        [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
+    };
+    let small = a.map(|row| row.map(|entry| entry / 4096.0));
+    let (mut sum, mut term) = ([[1.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 1.0]]);
+    for n in 1..12 {
+        term = product(term, small).map(|row| row.map(|entry| entry / f64::from(n)));
+        for (sum, term) in sum.iter_mut().flatten().zip(term.as_flattened()) {
+            *sum += term;
+        }
+    }
+    (0..12).fold(sum, |power, _| product(power, power))
+}
+
 #[test]
 fn the_chain_is_its_formulas() {
     for seed in 0..200 {
@@ -40,6 +57,7 @@ fn the_chain_is_its_formulas() {
         let (mut state, mut memory) = (case.1.clone(), StageState::default());
         let (mut temperature, mut crept, mut lagged) = (None, Vec::new(), None);
         let mut x = plane.bottom();
+        let mut swung: Option<[f64; 2]> = None;
         let size: f64 = 10.0 + 2.0 * weights.iter().sum::<f64>();
         for input in inputs(&mut rng, &plane, 300) {
             let drive = constants
@@ -109,6 +127,19 @@ fn the_chain_is_its_formulas() {
             };
             let y = sum + (lagged.unwrap_or(sum) - sum) * fade;
             lagged = Some(y);
+            let y = match constants.ring {
+                None => y,
+                Some([frequency, damping]) => {
+                    let turn = 2.0 * std::f64::consts::PI * frequency * dt;
+                    let [at, velocity] = swung.unwrap_or([y, 0.0]);
+                    // Output and velocity over ω, from where the input draws them.
+                    let [a, b] = exponential([[0.0, turn], [-turn, -2.0 * damping * turn]]);
+                    let gap = at - y;
+                    let of = |row: [f64; 2]| row[0] * gap + row[1] * velocity;
+                    swung = Some([y + of(a), of(b)]);
+                    y + of(a)
+                }
+            };
             let shifted = constants.offset + of(&constants.offsets, 0.0);
             let expected = shifted + if constants.falling { -y } else { y };
             // The slope of the output is up to the sum of the weights for a tenth of a cell, and
@@ -229,9 +260,14 @@ fn attack<T: Real>(
         let reached = stages
             .step(&model, &mut again, &mut memory_again, sample)
             .unwrap();
+        // A ring remembers the target that was wanted as well, which is the last number.
+        let numbers = |memory: &StageState<T>| {
+            let all = memory.to_numbers();
+            all.map(Real::bits)[..all.len() - 1].to_vec()
+        };
         assert_eq!(
-            (&again, &memory_again),
-            (&state, &memory),
+            (&again, numbers(&memory_again)),
+            (&state, numbers(&memory)),
             "it moves as forward does"
         );
         if found.status == Status::Ok {
@@ -296,6 +332,7 @@ fn without_limits_every_target_in_range_is_met() {
         let case = build(plane, Operator::Mkp, &weights);
         let mut constants = Constants::random(&mut rng, &plane);
         constants.lag = 0.0; // a lag can need more than the operators can give
+        constants.ring = None; // a ring too
         constants.coefficients.clear();
         constants.taus.clear();
         let owned = constants.map(|v| v);
@@ -493,6 +530,8 @@ fn ends(range: Range) -> (Vec<f64>, Vec<f64>) {
         Range::Factor => (vec![1e-6, 1e6], vec![-1.0, 0.0, 0.9e-6, 1.1e6]),
         Range::Time => (vec![1e-9, 1e9], vec![-1.0, 0.0, 0.9e-9, 1.1e9]),
         Range::TimeOrNone => (vec![0.0, 1e-9, 1e9], vec![-1.0, 0.9e-9, 1.1e9]),
+        Range::Frequency => (vec![1e-9, 1e9], vec![-1.0, 0.9e-9, 1.1e9]),
+        Range::Damping => (vec![1e-4, 1.0], vec![-1.0, 0.0, 0.9e-4, 1.1]),
     };
     fine.push(1.0);
     wrong.extend([f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
@@ -509,7 +548,7 @@ fn whole() -> (Lists, Model<f64, [f64; table_len(2)]>) {
         "loads" => vec![1.0, 2.0],
         "shifts" | "offsets" => vec![0.0, 0.5],
         "spacing" => vec![0.0, 1.0, 3.0],
-        "lag" => vec![0.5],
+        "lag" | "ring_frequency" | "ring_damping" => vec![0.5],
         // A row for each of the loads.
         "rising" => vec![1.0, 2.0, 1.0, 3.0],
         "falling" => vec![0.0, 2.0, 1.0, 2.0],
@@ -580,6 +619,10 @@ fn lists_that_do_not_fit_each_other_are_refused_by_name() {
         refused(name, &[1.0, 2.0], "body");
     }
     refused("lag", &[1.0, 2.0], "lag");
+    for name in ["ring_frequency", "ring_damping"] {
+        refused(name, &[], "ring");
+        refused(name, &[0.5, 0.5], "ring");
+    }
     refused("loads", &[2.0, 1.0], "loads");
     refused("loads", &[1.0, 1.0], "loads");
     for curve in ["shifts", "scales", "gains", "offsets"] {

@@ -23,6 +23,8 @@ pub struct Constants {
     pub coefficients: Vec<f64>,
     pub taus: Vec<f64>,
     pub lag: f64,
+    /// Frequency and damping of a ring.
+    pub ring: Option<[f64; 2]>,
     pub offset: f64,
     pub falling: bool,
 }
@@ -92,6 +94,12 @@ impl Constants {
         let body = numbers(4, 0.3, 3.0);
         let offset = numbers(1, -5.0, 5.0)[0];
         let lag = numbers(1, 0.01, 1.0)[0];
+        // Seldom, so that the other stages are met as often as missed.
+        let ring = rng.random_range(0..4) == 0;
+        let ring = ring.then(|| {
+            let damping = 10_f64.powf(rng.random_range(-4.0..0.2)).min(1.0);
+            [10_f64.powf(rng.random_range(-2.0..1.0)), damping]
+        });
         let (spaced, scaled, gained) = (rng.random(), rng.random(), rng.random());
         let corners = plane.levels() + 1;
         let loads = ascending(rng, count, -3.0, 10.0);
@@ -122,6 +130,7 @@ impl Constants {
             coefficients,
             taus,
             lag: if rng.random() { lag } else { 0.0 },
+            ring,
             offset,
             falling: rng.random(),
         }
@@ -149,6 +158,8 @@ impl Constants {
             "creep" => &self.coefficients,
             "creep_taus" => &self.taus,
             "lag" => std::slice::from_ref(&self.lag),
+            "ring_frequency" => self.ring.as_ref().map_or(&[], |ring| &ring[..1]),
+            "ring_damping" => self.ring.as_ref().map_or(&[], |ring| &ring[1..]),
             other => panic!("no such constant: {other}"),
         }
     }

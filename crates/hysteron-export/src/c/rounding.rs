@@ -3,7 +3,7 @@
 use super::real::{CReal, Number, unfit};
 use super::stages::CSampling;
 use hysteron::{Error, Model, Operator, Result};
-use hysteron_core::{Stages, operator_index};
+use hysteron_core::{Ring, Stages, operator_index};
 
 /// What rounding may amount to where a target counts as reached, as a part of the range of outputs.
 /// The status allows no more.
@@ -23,7 +23,12 @@ pub(super) fn missed<T: Number>(model: &Model, sampling: &CSampling) -> Result<f
     };
     let load = stages.axis.load;
     let of_load = most(load.gains, 1.0);
-    let gain = of_load * stages.behind.steepest_at_rest();
+    // A ring overshoots to twice a step.
+    let overshoot = match stages.behind.ring == Ring::NONE {
+        true => 1.0,
+        false => 2.0,
+    };
+    let gain = of_load * stages.behind.steepest_at_rest() * overshoot;
     let Slopes { total, steepest } = Slopes::new(model);
     let (low, high) = model.output_range();
     let offset = most(load.offsets, 0.0);

@@ -2,7 +2,7 @@
 
 use super::real::{Number, unfit};
 use hysteron::{Error, Model, Remedy, Result, Setting, StageConstants};
-use hysteron_core::{Constant, MAX_PARTS, Plane, RATE_NUMBERS, Range, Real, Stages, table_len};
+use hysteron_core::{Constant, MAX_PARTS, Plane, RATE_NUMBERS, Real, Stages, table_len};
 
 /// How a model with stages runs on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -129,14 +129,13 @@ impl<T: Number> Staged<T> {
             .collect()
     }
 
-    /// The constants that C has as arrays: those that are lists. Time constants act through factors
-    /// alone, and those of the body are single numbers.
+    /// The constants that C has as arrays: those that are lists. Time constants and frequencies act
+    /// through factors alone, and those of the body are single numbers.
     pub(super) fn arrays(&self) -> impl Iterator<Item = (&'static str, &[T])> {
         let single = |name: &str| ["ambient", "gain"].contains(&name);
-        let timed = |range| matches!(range, Range::Time | Range::TimeOrNone);
         self.constants
             .iter()
-            .filter(move |(constant, _)| !single(constant.name) && !timed(constant.range))
+            .filter(move |(constant, _)| !single(constant.name) && !constant.range.is_timed())
             .map(|(constant, numbers)| (constant.name, numbers))
     }
 

@@ -366,6 +366,7 @@ fn a_plain_model_does_without_the_stages() {
         "curve",
         "creep",
         "lag",
+        "ring",
     ];
     assert_eq!(made.stages, stages);
     let after: Vec<Vec<u8>> = files

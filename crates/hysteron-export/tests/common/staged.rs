@@ -162,6 +162,14 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
         }
     }
     if coin(rng) {
+        file["version"] = 3.into();
+        // From steps of a hundredth of a radian to beyond the Nyquist frequency.
+        let turn = 10f64.powf(rng.random_range(-2.0..0.7));
+        let damping = 10f64.powf(rng.random_range(-3.0..0.1)).min(1.0);
+        file["stages"]["ring_frequency"] = json!([turn / (std::f64::consts::TAU * dt)]);
+        file["stages"]["ring_damping"] = json!([damping]);
+    }
+    if coin(rng) {
         let mut state = plain.start();
         let inputs: Vec<f64> = (0..9).map(|_| rng.random_range(low..high)).collect();
         plain.run(&mut state, &inputs, &mut [0.0; 9]).unwrap();

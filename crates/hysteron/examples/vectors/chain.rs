@@ -21,12 +21,22 @@ pub struct Aim {
     pub horizon: f64,
 }
 
-/// What body, creep and lag remember.
+/// What body, creep, lag and ring remember.
 #[derive(Clone)]
 struct Memory {
     temperature: f64,
+    after: After,
+    /// The output that was wanted of the ring; that of a step forward.
+    wanted: f64,
+}
+
+/// What the stages behind the operators remember.
+#[derive(Clone)]
+struct After {
     crept: Vec<f64>,
     lagged: f64,
+    /// Output of the ring, and its velocity over `ω`.
+    swung: [f64; 2],
 }
 
 /// The curves at one load, and the offset of the weights there.
@@ -120,11 +130,12 @@ impl<'m> Chain<'m> {
         let outputs = outputs.map(|(n, (sample, temperature))| {
             let sum = self.mixed(sample.load, |part| sums[part][n]);
             let loaded = self.loaded(sample.load);
-            let (settled, crept) = self.settled(loaded.gain * sum, sample.dt);
+            let after = self.settled(loaded.gain * sum, sample.dt);
+            let settled = after.swung[0];
             self.memory = Some(Memory {
                 temperature,
-                crept,
-                lagged: settled,
+                after,
+                wanted: settled,
             });
             self.outward(&loaded, settled)
         });
@@ -148,12 +159,17 @@ impl<'m> Chain<'m> {
         let wanted = sign * (target - loaded.offset - loaded.base);
         let operators = self.at(load)?;
         search.weigh(&operators)?;
-        let settled = |sum: f64| self.settled(loaded.gain * sum, dt).0;
+        let settled = |sum: f64| self.settled(loaded.gain * sum, dt).swung[0];
         let (off, on) = operators.output_range();
         // The steepest slope: as much of the sum the output may move within a tolerance.
-        let slope = self.steepest() * (self.timed(1.0, dt).0 - self.timed(0.0, dt).0) * loaded.gain;
+        let slope = self.steepest()
+            * (self.timed(1.0, dt).swung[0] - self.timed(0.0, dt).swung[0])
+            * loaded.gain;
         let seen = if slope > 0.0 {
-            let sum = root(settled, wanted);
+            let sum = match self.model.constants().get("ring_frequency") {
+                [] => root(settled, wanted),
+                _ => self.calm(&loaded, wanted, dt, (off, on)),
+            };
             // Where the sum is what it was but for rounding, it is just that.
             let apart = (sum - search.output()).abs();
             let target = if apart <= SAME * (on - off) {
@@ -191,11 +207,12 @@ impl<'m> Chain<'m> {
 
         let temperature = self.heated(last, drive, dt);
         search.travel(self.seen(&loaded, held, temperature))?;
-        let (settled, crept) = self.settled(loaded.gain * search.output(), dt);
+        let after = self.settled(loaded.gain * search.output(), dt);
+        let settled = after.swung[0];
         self.memory = Some(Memory {
             temperature,
-            crept,
-            lagged: settled,
+            after,
+            wanted,
         });
         let rest = |sum: f64| self.gain_at_rest() * self.curved(loaded.gain * sum);
         let ends = [off, on].map(|sum| self.outward(&loaded, rest(sum)));
@@ -324,8 +341,62 @@ impl<'m> Chain<'m> {
         }
     }
 
-    /// Curve, creep and lag: the output for the operators' `h`, and the outputs of the creep terms.
-    fn settled(&self, h: f64, dt: f64) -> (f64, Vec<f64>) {
+    /// The sum that is wanted of the operators for an output behind a ring: the exact one where what
+    /// alternates afterwards is within reach, and otherwise one that damps.
+    fn calm(&self, loaded: &Loaded, wanted: f64, dt: f64, (off, on): (f64, f64)) -> f64 {
+        let Some(memory) = &self.memory else {
+            return root(|sum| self.settled(loaded.gain * sum, dt).swung[0], wanted);
+        };
+        let constants = self.model.constants();
+        let zeta = constants.get("ring_damping")[0];
+        let turn = std::f64::consts::TAU * constants.get("ring_frequency")[0] * dt;
+        let [_, v] = memory.after.swung;
+        // The sum for an input of the ring.
+        let before = |input: f64| {
+            let sum = |sum: f64| self.timed(self.curved(loaded.gain * sum), dt).lagged;
+            root(sum, input)
+        };
+        let reach = |input: f64| (off..=on).contains(&before(input));
+        // The ring's output and velocity at the end are straight lines over its input.
+        let (none, one) = (self.swung(0.0, dt), self.swung(1.0, dt));
+        let [y0, v0] = none;
+        let [gain, b] = [one[0] - y0, one[1] - v0];
+        let exact = (wanted - y0) / gain;
+        // A ramp of this slope, at the samples: `v = d v + b (u − y)` and `y + rise = y + (1 − a)
+        // (u − y) + b v`, where `d` is how much of the velocity is left.
+        let d = self.left(turn, zeta);
+        let rise = wanted - memory.wanted;
+        let rate = rise * b / (b * b + gain * (1.0 - d));
+        let follow = memory.wanted + rise * (1.0 - d) / (b * b + gain * (1.0 - d));
+        let swing = (b / gain * (v0 + b * exact - rate)).abs();
+        if [exact, follow - swing, follow + swing]
+            .into_iter()
+            .all(reach)
+        {
+            let alternates = before(follow + swing) - before(follow - swing);
+            if alternates <= (on - off) / 128.0 {
+                return before(exact);
+            }
+            // A little of the target for the velocity: the least of `(y − y*)² + (1 − a) δ²/2`.
+            let weight = 0.5 * gain;
+            let soft = gain * (wanted - y0) + weight * b * (rate - v0);
+            return before(soft / (gain * gain + weight * b * b));
+        }
+        // Where the energy of what is left is least.
+        let least = (gain * (wanted - y0) + b * (rate - v0)) / (gain * gain + b * b);
+        let damped = follow + 2.0 * (1.0 - zeta) * (rate - v);
+        before(damped.clamp(follow.min(least), follow.max(least)))
+    }
+
+    /// How much of a velocity of the ring is left after a step.
+    fn left(&self, turn: f64, zeta: f64) -> f64 {
+        let root = (1.0 - zeta * zeta).sqrt();
+        let (sin, cos) = (root * turn).sin_cos();
+        (-zeta * turn).exp() * (cos - zeta / root * sin)
+    }
+
+    /// Curve, creep, lag and ring for the operators' `h`.
+    fn settled(&self, h: f64, dt: f64) -> After {
         self.timed(self.curved(h), dt)
     }
 
@@ -347,8 +418,30 @@ impl<'m> Chain<'m> {
         slopes.reduce(f64::max).unwrap_or(1.0)
     }
 
-    /// Creep and lag.
-    fn timed(&self, h: f64, dt: f64) -> (f64, Vec<f64>) {
+    /// Output and velocity of the ring with its input held at `u` for `dt`: the solution of the
+    /// differential equation. At the first sample it rests.
+    fn swung(&self, u: f64, dt: f64) -> [f64; 2] {
+        let constants = self.model.constants();
+        let (&[frequency], Some(memory)) = (constants.get("ring_frequency"), &self.memory) else {
+            return [u, 0.0];
+        };
+        let zeta = constants.get("ring_damping")[0];
+        let turn = std::f64::consts::TAU * frequency * dt;
+        let root = (1.0 - zeta * zeta).sqrt();
+        let (fade, angle) = ((-zeta * turn).exp(), root * turn);
+        let [y, v] = memory.after.swung;
+        // `u + e^(−ζωt) (p cos + q sin)`, and its derivative over ω.
+        let p = y - u;
+        let q = (v + zeta * p) / root;
+        let (sin, cos) = angle.sin_cos();
+        [
+            u + fade * (p * cos + q * sin),
+            fade * ((root * q - zeta * p) * cos - (root * p + zeta * q) * sin),
+        ]
+    }
+
+    /// Creep, lag and ring.
+    fn timed(&self, h: f64, dt: f64) -> After {
         let faded = |last: Option<f64>, now: f64, tau: f64| match last {
             Some(last) if tau > 0.0 => now + (last - now) * (-dt / tau).exp(),
             _ => now,
@@ -356,15 +449,23 @@ impl<'m> Chain<'m> {
         let memory = self.memory.as_ref();
         let terms = self.model.creep();
         let crept: Vec<f64> = (terms.iter().enumerate())
-            .map(|(k, term)| faded(memory.map(|memory| memory.crept[k]), h, term.tau))
+            .map(|(k, term)| faded(memory.map(|memory| memory.after.crept[k]), h, term.tau))
             .collect();
         let crawl = terms.iter().zip(&crept);
         let sum = h + crawl
             .map(|(term, crept)| term.coefficient * crept)
             .sum::<f64>();
-        let lagged = faded(memory.map(|memory| memory.lagged), sum, self.model.lag());
+        let lagged = faded(
+            memory.map(|memory| memory.after.lagged),
+            sum,
+            self.model.lag(),
+        );
         // At the first sample the lag has rested at `h`, and nothing of that is left.
-        (lagged, crept)
+        After {
+            crept,
+            lagged,
+            swung: self.swung(lagged, dt),
+        }
     }
 
     fn gain_at_rest(&self) -> f64 {

@@ -22,6 +22,7 @@ enum Stage {
     Lag,
     Curve,
     Registration,
+    Ring,
     /// Weights and offset of the second order in the load.
     Weights,
 }
@@ -56,6 +57,7 @@ pub fn all() -> Result<Vec<(String, String)>> {
     both("lag-mkp-5", Mkp, &[Stage::Lag], line)?;
     both("curve-mkp-5", Mkp, &[Stage::Curve], line)?;
     both("registration-mkp-5", Mkp, &[Stage::Registration], line)?;
+    both("ring-mkp-5", Mkp, &[Stage::Ring], line)?;
     both("chain-mkp-5", Mkp, &EVERY, line)?;
     both("chain-kp-5", Kp, &EVERY, (-3.5, Negative))?;
     both("chain-relay-5", Relay, &EVERY, line)?;
@@ -65,6 +67,8 @@ pub fn all() -> Result<Vec<(String, String)>> {
     let registered = [&EVERY[..], &[Stage::Registration]].concat();
     both("chain-registration-mkp-5", Mkp, &registered, line)?;
     both("chain-registration-kp-5", Kp, &registered, (-3.5, Negative))?;
+    let ringing = [&EVERY[..], &[Stage::Ring]].concat();
+    both("chain-ring-kp-5", Kp, &ringing, (-3.5, Negative))?;
     both("weights-mkp-5", Mkp, &[Stage::Weights], line)?;
     let whole = [&EVERY[..], &[Stage::Weights]].concat();
     both("chain-weights-mkp-5", Mkp, &whole, line)?;
@@ -130,6 +134,10 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
                     "knots": [10.0, 30.0, 50.0, 74.0],
                     "rising": up[..loads].concat(), "falling": down[..loads].concat(),
                 });
+            }
+            Stage::Ring => {
+                text["version"] = 3.into();
+                text["stages"] = json!({"ring_frequency": [1.0], "ring_damping": [0.125]});
             }
             Stage::Weights => {
                 let offset = |part: usize| plain.offset() + [0.0, 1.5, -0.25][part];
@@ -376,7 +384,8 @@ fn references(model: &Model) -> Vec<Reference> {
     ];
     if model.is_timed() {
         // A lag that follows a body cannot tell which way to drive while time stands still.
-        let still = model.thermal.is_none() || model.lag() == 0.0;
+        let rings = !model.constants().get("ring_frequency").is_empty();
+        let still = (model.thermal.is_none() || model.lag() == 0.0) && !rings;
         all.push(Reference {
             dt: times(&mut random, still),
             ..run(

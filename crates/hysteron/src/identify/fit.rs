@@ -5,7 +5,7 @@ use crate::identify::choose::Open;
 use crate::identify::choose::start::{at_rest, usual_start};
 use crate::identify::doubt::sessions::widen;
 use crate::identify::kept;
-use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
+use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked};
@@ -58,6 +58,7 @@ impl Default for Fit<'_> {
         let options = FitOptions {
             robust: true,
             spacing: Spacing::Auto,
+            dynamics: Dynamics::Auto,
             ..FitOptions::plain()
         };
         Self {
@@ -238,6 +239,15 @@ impl<'a> Fit<'a> {
         self
     }
 
+    /// What is looked for behind the operators in recordings with time: by default a ring, a
+    /// resonance of the second order, where the recordings excite one. It is taken only if it
+    /// predicts parts of them that were left out. Recordings with a load get none.
+    #[must_use]
+    pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
+        self.options.dynamics = dynamics;
+        self
+    }
+
     /// Number of pieces of an output curve behind the operators, 1 to 100; 0 for none.
     /// [`Auto`](crate::Auto) takes a curve only if it predicts parts of the recordings that were
     /// left out. Recordings with a load get none.
@@ -306,14 +316,17 @@ impl<'a> Fit<'a> {
     /// # Errors
     /// - [`crate::Error::Recording`] for an invalid recording or a constant input.
     /// - [`crate::Error::Core`] for an invalid plane.
-    /// - [`crate::Error::Fit`] for options that contradict each other, and for creep or a lag
-    ///   without time.
+    /// - [`crate::Error::Fit`] for options that contradict each other, and for creep, a lag or a
+    ///   ring without time.
     /// - [`crate::Error::Thermal`] for a thermal body without time.
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
         let mut options = self.options.clone();
-        if options.asks_after() {
+        if options.dynamics == Dynamics::Lag && options.lag == Choice::Fixed(0.0) {
+            options.lag = Choice::Auto;
+        }
+        if options.needs_time() {
             stages::check_time(recordings)?;
         }
         // A body and a load change what the operators see of the first sample.

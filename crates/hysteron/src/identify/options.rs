@@ -72,6 +72,21 @@ pub enum LoadLaw {
     Weights,
 }
 
+/// What is looked for behind the operators in recordings with time, beside creep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Dynamics {
+    /// A ring, where the recordings excite one; nothing where they do not, where creep or a lag is
+    /// asked for, or where there is a load.
+    Auto,
+    /// Nothing.
+    #[default]
+    Off,
+    /// A lag of the first order, as with an automatic `lag`.
+    Lag,
+    /// The best ring, excited or not.
+    Ring,
+}
+
 /// Where the levels of the plane are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spacing {
@@ -102,6 +117,7 @@ pub enum Spacing {
 /// | `spacing` | uniform; auto | uniform, auto | where the levels are |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
 /// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
+/// | `dynamics` | off; auto | off, auto, lag, ring | a resonance, see [`Dynamics`] |
 /// | `curve` | off (0) | auto, 1 to 100 | pieces of a curve behind the operators |
 /// | `bootstrap` | 0; 200 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
@@ -143,6 +159,8 @@ pub struct FitOptions {
     pub creep: Choice<usize>,
     /// Time constant of a lag of the whole, in seconds.
     pub lag: Choice<f64>,
+    /// What is looked for behind the operators in recordings with time, beside creep.
+    pub dynamics: Dynamics,
     /// Number of pieces of an output curve.
     pub curve: Choice<usize>,
     /// Number of bootstrap replicates.
@@ -207,6 +225,7 @@ impl FitOptions {
             spacing: Spacing::Uniform,
             creep: Choice::Fixed(0),
             lag: Choice::Fixed(0.0),
+            dynamics: Dynamics::Off,
             curve: Choice::Fixed(0),
             bootstrap: 0,
         }
@@ -232,6 +251,20 @@ impl FitOptions {
     /// Whether creep or a lag after the operators is asked for.
     pub(crate) fn asks_after(&self) -> bool {
         self.creep != Choice::Fixed(0) || self.lag != Choice::Fixed(0.0)
+    }
+
+    /// Whether a ring is looked for.
+    pub(crate) fn looks_for_ring(&self) -> bool {
+        match self.dynamics {
+            Dynamics::Auto => !self.asks_after(),
+            Dynamics::Ring => true,
+            Dynamics::Off | Dynamics::Lag => false,
+        }
+    }
+
+    /// Whether the recordings have to have time.
+    pub(crate) fn needs_time(&self) -> bool {
+        self.asks_after() || self.dynamics == Dynamics::Ring
     }
 
     /// Default number of bootstrap replicates: enough for standard errors of two digits, fewer for

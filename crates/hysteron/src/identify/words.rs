@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::identify::fit::Fit;
-use crate::identify::options::{Auto, Choice, LoadLaw, Spacing};
+use crate::identify::options::{Auto, Choice, Dynamics, LoadLaw, Spacing};
 use crate::model::{Sign, Smooth, Solver, Start};
 use hysteron_core::Operator;
 use serde::Serialize;
@@ -22,7 +22,7 @@ pub struct FitOption {
 }
 
 /// The options of a fit. `docs/options.md` has the same table.
-pub const FIT_OPTIONS: [FitOption; 18] = [
+pub const FIT_OPTIONS: [FitOption; 19] = [
     FitOption {
         name: "operator",
         default: "`mkp`",
@@ -118,6 +118,13 @@ pub const FIT_OPTIONS: [FitOption; 18] = [
         purpose: "time constant of a lag of the output",
     },
     FitOption {
+        name: "dynamics",
+        default: "`auto`",
+        range: "`auto`, `off`, `lag`, `ring`",
+        purpose: "with time: a resonance of the output; `auto`: where the recording excites one, if \
+                  that is better by 10 %; `lag` is `lag auto`",
+    },
+    FitOption {
         name: "curve",
         default: "`off`",
         range: "`off`, `auto`, 1 to 100",
@@ -209,6 +216,10 @@ impl Fit<'_> {
             ("lag", "off") => self.lag(0.0),
             ("lag", "auto") => self.lag(Auto),
             ("lag", text) => self.lag(finite(text).filter(|seconds| *seconds >= 0.0)?),
+            ("dynamics", "auto") => self.dynamics(Dynamics::Auto),
+            ("dynamics", "off") => self.dynamics(Dynamics::Off),
+            ("dynamics", "lag") => self.dynamics(Dynamics::Lag),
+            ("dynamics", "ring") => self.dynamics(Dynamics::Ring),
             ("curve", "off") => self.curve(0),
             ("curve", "auto") => self.curve(Auto),
             ("curve", text) => self.curve(number(text)?),

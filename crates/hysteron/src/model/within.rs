@@ -67,7 +67,8 @@ impl Model {
     /// output in front of the stages behind the operators. For a model at one load.
     ///
     /// # Errors
-    /// As [`Model::run_in`]; [`Error::Thermal`] where time stands still and the model has a lag.
+    /// As [`Model::run_in`]; [`Error::Thermal`] where time stands still and the model has a lag
+    /// or a ring.
     pub(crate) fn recording_within<'r>(
         &self,
         recording: &'r Recording,
@@ -149,7 +150,7 @@ impl Model {
             past = Some(next);
             h.is_finite().then_some(h).ok_or_else(|| {
                 let what =
-                    "time stands still in the recording, which a model with a lag cannot have";
+                    "time stands still in the recording, which a model with a lag or a ring cannot have";
                 let remedy = Remedy::new("repair it ({})", [Setting::any("repair")]);
                 Error::Thermal(what.into()).remedied(remedy)
             })

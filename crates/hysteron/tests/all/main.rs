@@ -36,6 +36,7 @@ mod readings_that_agree;
 mod recordings;
 mod remedies;
 mod rest;
+mod ring;
 mod rivals;
 mod rivals_left_out;
 mod roles;

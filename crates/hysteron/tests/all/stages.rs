@@ -681,6 +681,7 @@ fn the_page_has_the_constants_that_stages_declare() {
             let unit = match constant.unit {
                 Unit::One => "1",
                 Unit::Second => "s",
+                Unit::Hertz => "Hz",
                 Unit::Temperature => "temperature",
                 Unit::TemperaturePerDrive => "temperature per drive",
                 Unit::Load => "load",

@@ -132,7 +132,7 @@ fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
 
 /// A recording without time, for options that ask for creep or a lag.
 fn no_time() -> Error {
-    let what = "creep and lag depend on time, and the recording has none";
+    let what = "creep, lag and ring depend on time, and the recording has none";
     let remedy = Remedy::new("name its column ({})", [Setting::any("time")]);
     Error::Fit(what.into()).remedied(remedy)
 }

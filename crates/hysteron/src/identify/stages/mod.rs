@@ -1,14 +1,17 @@
 //! Identifies the stages around the operators, together with the weights.
 //!
 //! `body` is the thermal body, `load` the shift by the load, `spacing` the place of the levels,
-//! `after` and `curve` those behind the operators. Each finds its constants and hands on recordings as the next stage sees
-//! them. `nelder_mead` is the search of the body.
+//! `ring`, `after` and `curve` those behind the operators, from the last to the first. Each finds
+//! its constants and hands on recordings as the next stage sees them. `nelder_mead` is the search of
+//! body and ring.
 
 mod after;
 mod body;
 mod curve;
 mod load;
 mod nelder_mead;
+mod resonator;
+mod ring;
 mod spacing;
 
 pub(crate) use after::check_time;
@@ -68,6 +71,16 @@ pub(crate) fn fit(
         found.registration = law.registration;
         options.load_curves = law.uses_curves.then_some(law.curves);
     }
+    // Before the levels are chosen: what rings would be taken for a rough plane.
+    let mut ring = None;
+    if options.looks_for_ring()
+        && !loaded
+        && let Some(swinging) = ring::find(&seen, &options, progress)?
+    {
+        notes.insert("ring".to_owned(), json!(swinging.report));
+        seen = Cow::Owned(swinging.recordings);
+        ring = Some(swinging.constants);
+    }
     let unspaced = Seen {
         operators: &seen,
         even: &seen,
@@ -90,6 +103,11 @@ pub(crate) fn fit(
         notes.insert("after".to_owned(), json!(report));
         seen = Cow::Owned(after::before(&after, &seen)?);
         found.behind = after;
+    }
+    if let Some([frequency, damping]) = ring {
+        let named = [("ring_frequency", frequency), ("ring_damping", damping)];
+        let named = named.map(|(name, number)| (name, vec![number]));
+        found.behind = found.behind.with(named)?;
     }
     if options.curve != Choice::Fixed(0)
         && !loaded

@@ -1,0 +1,258 @@
+//! Identifies a ring of the output, where the recordings excite one and it predicts parts of them
+//! that were left out.
+//!
+//! For a given ring the weights are a linear problem, and for given weights the ring has two
+//! numbers. Both are found in turn: the ring by a simplex search over the logarithms of frequency
+//! and damping, the weights for the input of the ring that most likely gave the output.
+
+use crate::error::{Error, Result};
+use crate::identify::options::{Dynamics, FitOptions};
+use crate::identify::stages::nelder_mead::minimise;
+use crate::identify::stages::resonator::{Clock, Resonator};
+use crate::identify::weights::problem::Problem;
+use crate::model::Smooth;
+use crate::progress::Progress;
+use crate::recording::Recording;
+use crate::series::range;
+use serde::Serialize;
+
+/// Each recording is divided into this many blocks; those with an odd number are left out first,
+/// then the others. As for creep.
+const BLOCKS: usize = 6;
+
+/// A ring has to reduce the error on blocks left out by this share. As for creep.
+const WORTH: f64 = 0.1;
+
+/// A ring that takes less than this share off the squares that the operators leave is not searched
+/// for any further: the recording does not excite it.
+const EXCITED: f64 = 0.1;
+
+/// Frequencies tried in each decade, and dampings. A resonance is as wide as its damping, so the
+/// widest one finds it, and the search then goes to it.
+const DECADE: f64 = 30.0;
+const DAMPINGS: [f64; 3] = [0.03, 0.12, 0.5];
+
+/// The lowest frequency has so many cycles in the longest recording; the highest so many cycles a
+/// sample, below the one half that samples can tell.
+const CYCLES: f64 = 10.0;
+const HIGHEST: f64 = 0.45;
+
+/// From a damping of `1/√2` on there is no resonance. A lag says the same then.
+const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// A ring has to die down within this share of the longest recording. One that goes on is not told
+/// apart from an input that does.
+const DECAYS: f64 = 1.0 / 3.0;
+
+/// Samples that are looked at when frequencies are tried.
+const LOOKED_AT: usize = 50_000;
+
+/// Turns between weights and ring.
+const ROUNDS: usize = 5;
+
+/// Smoothness of the weights in the search, as for creep. Levels are those of the options, which
+/// need not be chosen yet.
+const SMOOTH: Smooth = Smooth {
+    along: 0.0,
+    across: 1e-6,
+};
+
+/// What was tried, for the model file.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Report {
+    /// Error on blocks left out without a ring, in percent of the range.
+    without: f64,
+    /// The same with the ring taken.
+    with: f64,
+}
+
+/// A ring: frequency in Hz and damping ratio, and the recordings as what is before it sees them.
+pub(super) struct Swinging {
+    pub(super) constants: [f64; 2],
+    pub(super) recordings: Vec<Recording>,
+    pub(super) report: Report,
+}
+
+/// Finds a ring; `None` where the recordings do not excite one. One that was asked for is taken in
+/// any case.
+///
+/// # Errors
+/// [`Error::Fit`] for a ring that was asked for where none can be searched for.
+pub(super) fn find(
+    recordings: &[Recording],
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<Option<Swinging>> {
+    let asked = options.dynamics == Dynamics::Ring;
+    let Some(clock) = Clock::new(recordings) else {
+        return Ok(None);
+    };
+    let options = FitOptions {
+        bootstrap: 0,
+        smooth: options.smooth.at_least(SMOOTH),
+        ..options.clone()
+    };
+    progress.tell("ring", f64::NAN)?;
+    let mut search = Search {
+        measured: recordings.iter().flat_map(|r| r.output.clone()).collect(),
+        problem: Problem::new(recordings, &options)?,
+        clock: &clock,
+        progress,
+    };
+    let still = search.sums(None)?;
+    let Some(first) = search.first(&still, asked)? else {
+        return Ok(None);
+    };
+    let blocks: Vec<usize> = recordings
+        .iter()
+        .flat_map(|recording| (0..recording.len()).map(|n| n * BLOCKS / recording.len()))
+        .collect();
+    let mut squares = [0.0; 2];
+    for parity in 0..2 {
+        let kept: Vec<f64> = blocks.iter().map(|b| f64::from(b % 2 != parity)).collect();
+        let still = search.still(Some(&kept))?;
+        let (_, _, swung) = search.swung(first, Some(&kept), &still)?;
+        for (squares, outputs) in squares.iter_mut().zip([still, swung]) {
+            let errors = outputs.iter().zip(&search.measured).zip(&kept);
+            let left_out = errors.filter(|(_, kept)| **kept == 0.0);
+            *squares += left_out.map(|((h, y), _)| (h - y).powi(2)).sum::<f64>();
+        }
+    }
+    let (low, high) = range(&search.measured);
+    let count = search.measured.len() as f64;
+    let [without, with] = squares.map(|sum| 100.0 * (sum / count).sqrt() / (high - low));
+    let worth = with < (1.0 - WORTH) * without;
+    if !(worth || asked) {
+        return Ok(None);
+    }
+    let (constants, targets, _) = search.swung(first, None, &still)?;
+    let [frequency, damping] = constants;
+    let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
+    if !asked && (damping >= RESONANT || decay > DECAYS * clock.longest) {
+        return Ok(None);
+    }
+    let mut recordings = recordings.to_vec();
+    let mut targets = targets.into_iter();
+    for output in recordings.iter_mut().flat_map(|r| &mut r.output) {
+        *output = targets.next().unwrap_or(*output);
+    }
+    Ok(Some(Swinging {
+        constants,
+        recordings,
+        report: Report { without, with },
+    }))
+}
+
+struct Search<'a> {
+    problem: Problem<'a>,
+    measured: Vec<f64>,
+    clock: &'a Clock,
+    progress: Progress<'a>,
+}
+
+impl Search<'_> {
+    /// The outputs of the operators, fitted to the outputs of the problem at the samples kept.
+    fn sums(&mut self, kept: Option<&[f64]>) -> Result<Vec<f64>> {
+        self.progress.tell("ring", f64::NAN)?;
+        let fitted = self.problem.solve(kept, Progress::NONE)?;
+        let (offset, sign) = (self.problem.options.offset, fitted.sign.factor());
+        let predicted = self.problem.predict(&fitted.solution)?;
+        let outputs = predicted.iter().map(|h| offset.unwrap_or(0.0) + sign * h);
+        Ok(outputs.collect())
+    }
+
+    /// Those without a ring.
+    fn still(&mut self, kept: Option<&[f64]>) -> Result<Vec<f64>> {
+        let measured = self.measured.clone();
+        *self.problem.experiment.output.to_mut() = measured;
+        self.sums(kept)
+    }
+
+    /// The squares that a ring behind these sums leaves at the samples kept.
+    fn squares(&self, ring: [f64; 2], sums: &[f64], kept: Option<&[f64]>, most: usize) -> f64 {
+        let told = ring[0] * self.clock.step <= HIGHEST && ring[0] * self.clock.longest >= CYCLES;
+        let ring = Resonator::new(self.clock, ring, most).filter(|_| told);
+        let Some(ring) = ring else {
+            return f64::INFINITY;
+        };
+        left(&ring.forward(sums), &self.measured, kept)
+    }
+
+    /// The best of the frequencies and dampings that are tried; `None` where it leaves about as
+    /// much as the operators alone.
+    fn first(&self, sums: &[f64], asked: bool) -> Result<Option<[f64; 2]>> {
+        let looked = sums.len().min(LOOKED_AT);
+        let without = left(&sums[..looked], &self.measured, None);
+        let (lowest, highest) = (CYCLES / self.clock.longest, HIGHEST / self.clock.step);
+        let count = (DECADE * (highest / lowest).log10()).ceil().max(0.0) as usize;
+        let mut best = (f64::INFINITY, None);
+        for n in 0..count {
+            self.progress.tell("ring", f64::NAN)?;
+            let frequency = lowest * 10_f64.powf((n as f64 + 0.01) / DECADE);
+            for damping in DAMPINGS {
+                let ring = [frequency, damping];
+                let squares = self.squares(ring, sums, None, looked);
+                if squares < best.0 {
+                    best = (squares, Some(ring));
+                }
+            }
+        }
+        match best.1 {
+            None if asked => {
+                let what = format!(
+                    "a ring: {CYCLES} cycles of it are longer than the recording, or faster than \
+                     its samples"
+                );
+                Err(Error::Fit(what))
+            }
+            found if asked || best.0 < (1.0 - EXCITED) * without => Ok(found),
+            _ => Ok(None),
+        }
+    }
+
+    /// The ring and the weights in turn, from the outputs of weights without a ring: the ring, what
+    /// the operators have to give in front of it, and the outputs behind it.
+    fn swung(
+        &mut self,
+        first: [f64; 2],
+        kept: Option<&[f64]>,
+        still: &[f64],
+    ) -> Result<([f64; 2], Vec<f64>, Vec<f64>)> {
+        let (mut at, mut sums) = (first.map(f64::ln), still.to_vec());
+        let mut edge = 0.1;
+        let mut round = 0;
+        loop {
+            let squares =
+                |at: &[f64; 2]| Ok(self.squares(at.map(f64::exp), &sums, kept, usize::MAX));
+            at = minimise(at, edge, 1e-4, 60, squares)?.0;
+            edge = 0.02;
+            let constants = at.map(f64::exp);
+            let ring = Resonator::new(self.clock, constants, usize::MAX);
+            let ring = ring.ok_or_else(|| Error::Fit("a ring out of its range".into()))?;
+            let outputs = ring.forward(&sums);
+            let change = self.measured.iter().zip(&outputs).map(|(y, h)| y - h);
+            let change = ring.undone(&change.collect::<Vec<_>>(), kept);
+            let targets = sums.iter().zip(change).map(|(h, change)| h + change);
+            let targets: Vec<f64> = targets.collect();
+            if round == ROUNDS {
+                return Ok((constants, targets, outputs));
+            }
+            self.problem.experiment.output.to_mut().clone_from(&targets);
+            sums = self.sums(kept)?;
+            round += 1;
+        }
+    }
+}
+
+/// The squares of what is left at the samples kept, about their mean.
+fn left(outputs: &[f64], measured: &[f64], kept: Option<&[f64]>) -> f64 {
+    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for (n, (h, y)) in outputs.iter().zip(measured).enumerate() {
+        let weight = kept.map_or(1.0, |kept| kept[n]);
+        let error = y - h;
+        count += weight;
+        sum += weight * error;
+        squares += weight * error * error;
+    }
+    squares - sum * sum / count
+}
