@@ -45,6 +45,15 @@ pub struct Scheme {
     /// `None` for sensors without noise, where an unchanged reading is normal: equal readings are
     /// valid then, and a missing reading counts as broken at once.
     pub stuck_s: Option<f64>,
+    /// Whether readings of the output that are far from the last one, and that the model does not
+    /// expect, are taken as missing until two more agree with them. So a spike does not move the
+    /// drive. A plant that jumps from one sample to the next is then believed two samples late.
+    pub gate: bool,
+    /// The fastest change of the drive, in its unit per second; `None` for no such limit.
+    pub slew: Option<f64>,
+    /// Samples until a drive moves the output that is read. So many samples ahead is the target
+    /// that the inverse solves for, as far as it is told ([`super::Controller::step_ahead`]).
+    pub delay: usize,
 }
 
 impl Scheme {
@@ -65,6 +74,9 @@ impl Scheme {
             inner: None,
             filter_s: 0.0,
             stuck_s: None,
+            gate: false,
+            slew: None,
+            delay: 0,
         }
     }
 
@@ -90,6 +102,7 @@ impl Scheme {
             self.stuck_s.is_none_or(positive),
             "`stuck_s` must be above zero",
         )?;
+        require(self.slew.is_none_or(positive), "`slew` must be above zero")?;
         require(self.bias.is_finite(), "`bias` must be a finite number")?;
         require(
             range(self.commands),
