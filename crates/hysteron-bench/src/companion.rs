@@ -68,6 +68,19 @@ impl Companion {
         found.bytes.is_none() || found.bytes == length
     }
 
+    /// The file beside a log that a run goes on with.
+    ///
+    /// # Errors
+    /// As [`Companion::read`].
+    pub(crate) fn of(log: &Path) -> Result<Self> {
+        if !beside(log).exists() {
+            let what =
+                "there is no file beside this log to go on from, so that nothing can be resumed";
+            return Err(of_file(log, io::Error::other(what)));
+        }
+        Self::read(log)
+    }
+
     /// Reads the file beside a log.
     ///
     /// # Errors

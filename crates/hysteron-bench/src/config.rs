@@ -275,10 +275,8 @@ impl Config {
         self.folder().join(path)
     }
 
+    /// The folder of the file; empty for the present one.
     pub(crate) fn folder(&self) -> &Path {
-        match self.path.parent() {
-            Some(folder) if folder != Path::new("") => folder,
-            _ => Path::new("."),
-        }
+        self.path.parent().unwrap_or(Path::new(""))
     }
 }

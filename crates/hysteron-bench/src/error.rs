@@ -29,6 +29,9 @@ pub enum Error {
         /// What is wrong, and what to do.
         problem: String,
     },
+    /// Somebody stopped it before the device had said who it is.
+    #[error("stopped before the device had said who it is")]
+    Stopped,
     /// A file cannot be read or written, or the library refused a model, a table or a controller.
     #[error(transparent)]
     Hysteron(#[from] hysteron::Error),

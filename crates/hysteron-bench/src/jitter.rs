@@ -5,6 +5,7 @@ use std::time::Instant;
 /// Intervals between samples, and answers to them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Jitter {
+    first: Option<(Instant, f64)>,
     last: Option<(Instant, f64)>,
     squares: f64,
     count: u64,
@@ -20,18 +21,20 @@ impl Jitter {
             self.count += 1;
         }
         self.last = Some((came, time));
+        self.first = self.first.or(self.last);
         self.slowest = self
             .slowest
             .max(answered.duration_since(came).as_secs_f64());
     }
 
     /// Root mean square of what the intervals by the host's clock differ from those by the
-    /// device's, s; 0 before the second sample.
-    pub(crate) fn rms_s(&self) -> f64 {
-        match self.count {
-            0 => 0.0,
-            count => (self.squares / count as f64).sqrt(),
-        }
+    /// device's, s. `None` before the second sample, and for a simulation, which waits for its
+    /// drives and keeps no clock: its time runs at another speed.
+    pub(crate) fn rms_s(&self) -> Option<f64> {
+        let ((begun, from), (now, to)) = (self.first?, self.last?);
+        let speed = (to - from) / now.duration_since(begun).as_secs_f64();
+        let real = self.count > 0 && (0.5..2.0).contains(&speed);
+        real.then(|| (self.squares / self.count as f64).sqrt())
     }
 
     /// The slowest answer, s.

@@ -14,6 +14,9 @@ use hysteron_sim::track;
 /// Samples of a reference that a controller is told ahead, at most.
 const MOST_AHEAD: usize = 10_000;
 
+/// Share of the output's way that is never taken for a spike.
+const SMALL: f64 = 0.02;
+
 /// What is read before the device is asked anything.
 #[derive(Debug, Clone)]
 pub(crate) struct Sources {
@@ -104,7 +107,6 @@ impl Plan {
             }
             _ => Controller::new(Scheme {
                 slew: config.limits.slew,
-                gate: true,
                 ..Scheme::new(header.dt, drives)
             })?,
         };
@@ -228,7 +230,7 @@ impl Made {
             filter_s: options.filter_s,
             delay: options.delay,
             slew: config.limits.slew,
-            gate: true,
+            gate: Some(SMALL * scale(sources)),
             ..Scheme::new(header.dt, drives)
         };
         scheme.pid = match (options.gains().filter(|_| kind.has_pid()), &sources.model) {
@@ -279,6 +281,23 @@ impl Made {
             _ => track::compensator(&options, model)?,
         };
         Ok(Compensator::shadowed(model, learning)?)
+    }
+}
+
+/// How far the output goes: through the reference, or through the model's range where that is wider.
+fn scale(sources: &Sources) -> f64 {
+    let width = |(low, high): (f64, f64)| high - low;
+    let course = sources.course.as_ref().map(Course::range);
+    let model = sources.model.as_ref().map(Model::output_range);
+    let wide = course
+        .into_iter()
+        .chain(model)
+        .map(width)
+        .fold(0.0, f64::max);
+    match wide > 0.0 {
+        true => wide,
+        // A constant reference, and no model.
+        false => course.map_or(0.0, |(low, _)| low.abs()),
     }
 }
 

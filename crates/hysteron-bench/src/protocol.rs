@@ -262,7 +262,7 @@ fn unit_of(text: &str) -> (&str, Option<&str>) {
 #[must_use]
 pub fn drive_text(drive: f64, (low, high): (f64, f64)) -> (String, f64) {
     let leading = (high - low).abs().log10().floor();
-    let digits = (9.0 - leading).clamp(0.0, 18.0) as usize;
+    let digits = (9.0 - leading).clamp(0.0, 30.0) as usize;
     let text = format!("{drive:.digits$}");
     let text = match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),

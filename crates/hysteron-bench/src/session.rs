@@ -55,8 +55,8 @@ pub struct Seen<'a> {
     pub drive: f64,
     /// What learns, or that the fixed model is used; empty without a learner.
     pub learner: &'a str,
-    /// Root mean square jitter of the intervals, s.
-    pub jitter_s: f64,
+    /// Root mean square jitter of the intervals, s; `None` for a device that keeps no clock.
+    pub jitter_s: Option<f64>,
 }
 
 /// What a run came to.
@@ -76,8 +76,9 @@ pub struct Summary {
     pub rmse: Option<f64>,
     /// Share of the samples that the learner was used for; `None` without one.
     pub learned: Option<f64>,
-    /// Root mean square jitter of the intervals, s, by the host's clock.
-    pub jitter_s: f64,
+    /// Root mean square jitter of the intervals, s, by the host's clock; `None` for a device that
+    /// keeps none.
+    pub jitter_s: Option<f64>,
     /// The slowest answer, s.
     pub slowest_s: f64,
     /// The gains found from the model and their margin.
@@ -113,7 +114,7 @@ pub fn run(
     let path = log_path(config, options)?;
     let sources = Sources::read(config)?;
     let before = match options.resume {
-        true => Some(Companion::read(&path)?),
+        true => Some(Companion::of(&path)?),
         false => log::claim(&path, options.force).map(|()| None)?,
     };
     let mut line = device::open(config)?;
@@ -218,24 +219,27 @@ fn log_path(config: &Config, options: &Options) -> Result<PathBuf> {
 
 /// Asks the device who it is, and plans the run for it.
 fn begin(config: &Config, sources: Sources, line: &mut dyn Line, stop: &Stop) -> Result<Plan> {
-    let refused = |problem: String| Error::Device {
-        name: device::name(config),
-        problem,
-    };
-    let header = ask(line, stop).map_err(refused)?;
+    let header = ask(line, stop).map_err(|problem| match problem {
+        None => Error::Stopped,
+        Some(problem) => Error::Device {
+            name: device::name(config),
+            problem,
+        },
+    })?;
     Plan::new(config, sources, header)
 }
 
-fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Header, String> {
+/// Who the device is; `None` in the error for somebody who stopped it.
+fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Header, Option<String>> {
     let start = Instant::now();
     let mut asked = None;
     while start.elapsed() < ANSWER {
         if stop.is_set() {
-            return Err("stopped before it said who it is".into());
+            return Err(None);
         }
         if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
             let sent = line.send(&ToDevice::Who.line());
-            sent.map_err(|error| format!("it cannot be asked who it is: {error}"))?;
+            sent.map_err(|error| Some(format!("it cannot be asked who it is: {error}")))?;
             asked = Some(Instant::now());
         }
         match line.receive(Instant::now() + LOOK) {
@@ -243,17 +247,17 @@ fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Header, String> 
             Received::Line(bytes, _) => {
                 if let Some(FromDevice::Header(header)) = opened(&bytes).and_then(FromDevice::parse)
                 {
-                    return header;
+                    return header.map_err(Some);
                 }
             }
             Received::Silence => {}
-            Received::Closed => return Err("it ended before it said who it is".into()),
+            Received::Closed => return Err(Some("it ended before it said who it is".into())),
         }
     }
-    Err(format!(
+    Err(Some(format!(
         "it did not say who it is within {} s",
         ANSWER.as_secs()
-    ))
+    )))
 }
 
 struct Session {
@@ -439,7 +443,8 @@ impl Session {
         let (numbers, times) = self.companion.shift;
         At {
             number: sample.number + numbers,
-            time: sample.time + times,
+            // Shorter than any clock counts, and without the digits that a sum leaves.
+            time: (1e9 * (sample.time + times)).round() / 1e9,
         }
     }
 
@@ -495,11 +500,11 @@ impl Session {
             (word, learner),
         );
         let written = self.log.row(&row);
-        if let Err(error) = written {
-            end = end.or_else(|| Some(End::Log(error.to_string())));
+        match written {
+            Ok(()) => self.counts.samples += 1,
+            Err(error) => end = end.or_else(|| Some(End::Log(error.to_string()))),
         }
         self.logged = Some(at);
-        self.counts.samples += 1;
         if answer.learner_used {
             self.learned += 1;
         }
@@ -604,7 +609,7 @@ impl Session {
     fn ends(&mut self, elapsed: f64, time: f64, output: f64, answer: &Answer) -> Option<End> {
         let plan = &self.plan;
         let tolerance = 0.01 * plan.header.dt;
-        if output.is_finite() && !answer.status.rejected {
+        if output.is_finite() {
             self.valid_s = time;
         }
         // A spike alone is no end; a second reading beyond the limits is.

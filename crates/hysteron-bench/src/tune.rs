@@ -129,7 +129,7 @@ fn travel(model: &Model, scheme: &Scheme, pid: Option<Gains>, inverse: bool) -> 
     let mut controller = Controller::new(Scheme {
         compensator: Some(Compensator::fixed(model)?).filter(|_| inverse || pid.is_none()),
         pid,
-        gate: false,
+        gate: None,
         slew: None,
         ..scheme.clone()
     })?;

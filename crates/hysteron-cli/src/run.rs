@@ -76,14 +76,14 @@ pub(crate) fn run(args: &args::Run) -> Result<()> {
     );
     bar.finish_and_clear();
     let found = found.map_err(plain)?;
-    match args.json.json {
-        true => print(&to_json(&found).to_string())?,
-        false => print(&to_text(&found))?,
-    }
+    let printed = match args.json.json {
+        true => print(&to_json(&found).to_string()),
+        false => print(&to_text(&found)),
+    };
     match found.end {
         End::Done => {
             say(format_args!("{}", found.end));
-            Ok(())
+            printed
         }
         end => Err(Ended(end).into()),
     }
@@ -93,6 +93,7 @@ pub(crate) fn run(args: &args::Run) -> Result<()> {
 fn plain(error: Error) -> Box<dyn std::error::Error> {
     match error {
         Error::Hysteron(error) => error.into(),
+        Error::Stopped => Ended(End::Stopped).into(),
         error => error.into(),
     }
 }
@@ -114,7 +115,9 @@ fn line(seen: &Seen<'_>) -> String {
     if !seen.learner.is_empty() {
         parts.push(format!("learner {}", seen.learner));
     }
-    parts.push(format!("jitter {:.2} ms", 1e3 * seen.jitter_s));
+    if let Some(jitter) = seen.jitter_s {
+        parts.push(format!("jitter {:.2} ms", 1e3 * jitter));
+    }
     parts.join("  ")
 }
 
@@ -147,12 +150,11 @@ fn to_text(found: &Summary) -> String {
             found.old,
             found.bad
         ),
-        format!(
-            "jitter {:.3} ms (root mean square), slowest answer {:.3} ms",
-            1e3 * found.jitter_s,
-            1e3 * found.slowest_s
-        ),
+        format!("slowest answer {:.3} ms", 1e3 * found.slowest_s),
     ];
+    if let Some(jitter) = found.jitter_s {
+        lines.push(format!("jitter {:.3} ms (root mean square)", 1e3 * jitter));
+    }
     if let Some((gains, margin)) = found.tuned {
         lines.push(format!(
             "PID from the model: gain {}, integral time {} s; it may grow {margin:.0}-fold",

@@ -1,7 +1,7 @@
 //! A child process on its standard input and output.
 
+use super::line::{Line, Received};
 use super::wires::Wires;
-use super::{Line, Received};
 use std::io;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -22,6 +22,10 @@ impl Child {
         let (program, arguments) = words
             .split_first()
             .ok_or_else(|| io::Error::other("a program is needed"))?;
+        let folder = match folder == Path::new("") {
+            true => Path::new("."),
+            false => folder,
+        };
         // A path is from the folder of the file; a name is looked for as a shell does.
         let path = Path::new(program);
         let program = match path.is_relative() && path.components().count() > 1 {

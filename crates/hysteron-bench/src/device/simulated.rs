@@ -1,6 +1,6 @@
 //! A plant of `track` that speaks the protocol. It waits for each drive.
 
-use super::{Line, Received};
+use super::line::{Line, Received};
 use crate::protocol::{ToDevice, closed, opened};
 use hysteron::control::SimulatedPlant;
 use hysteron_sim::track::PlantOptions;

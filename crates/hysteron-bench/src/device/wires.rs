@@ -1,6 +1,6 @@
 //! A reader and a writer in threads of their own, so that the loop never waits for either.
 
-use super::{Line, Received};
+use super::line::{Line, Received};
 use crate::protocol::LONGEST;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::sync::atomic::{AtomicBool, Ordering};

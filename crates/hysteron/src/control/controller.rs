@@ -83,7 +83,7 @@ pub struct Controller {
     scheme: Scheme,
     /// Time since the sample before, s.
     dt: f64,
-    gate: Gate,
+    gate: Option<Gate>,
     standstill: Standstill,
     /// The drive to go on from at the next sample.
     from: Option<f64>,
@@ -118,7 +118,7 @@ impl Controller {
         let sensor = || Sensor::new(scheme.filter_s, scheme.stuck_s);
         Ok(Self {
             dt: scheme.interval_s,
-            gate: Gate::new(),
+            gate: scheme.gate.map(Gate::new),
             standstill: Standstill::default(),
             from: None,
             fade: (0.0, 0),
@@ -318,7 +318,7 @@ impl Controller {
 
     /// How long the output has stood still to the last bit where it has to move, s; `None` where
     /// its sensor works. It has to move where the model expects 5 % of its range; without a model,
-    /// where the drive has gone half its way to a limit since.
+    /// where the drive has gone almost half its way to a limit since. It goes no further than that.
     #[must_use]
     pub fn stuck_s(&self) -> Option<f64> {
         self.standstill.stuck_s()
@@ -368,7 +368,7 @@ impl Controller {
         let mut output = reading.output;
         if output.is_finite() {
             status.stuck = self.stands_still(output, input);
-            status.rejected = self.scheme.gate && !self.passes(output, input);
+            status.rejected = !self.passes(output, input);
             if status.stuck || status.rejected {
                 output = f64::NAN;
             }
@@ -401,10 +401,12 @@ impl Controller {
     fn passes(&mut self, output: f64, input: Option<Sensed>) -> bool {
         let (compensator, dt) = (self.scheme.compensator.as_ref(), self.dt);
         let input = input.and_then(Sensed::value);
-        self.gate.passes(output, || match (compensator, input) {
+        let expected = || match (compensator, input) {
             (Some(compensator), Some(input)) => compensator.expected_change(input, dt),
             _ => 0.0,
-        })
+        };
+        let gate = self.gate.as_mut();
+        gate.is_none_or(|gate| gate.passes(output, expected))
     }
 
     fn act(
@@ -501,7 +503,11 @@ impl Controller {
         let (offset, left) = &mut self.fade;
         let bias = feedforward + *offset * f64::from(*left) / f64::from(FADE);
         *left = left.saturating_sub(1);
-        let commands = self.scheme.commands;
+        let (low, high) = self.scheme.commands;
+        let commands = match self.standstill.room() {
+            Some(room) => (low.max(room.0), high.min(room.1)),
+            None => (low, high),
+        };
         Ok(match (&mut self.pid, measured, error) {
             (Some(pid), Some(measured), Some(error)) => {
                 pid.follow(error, measured, self.dt, bias, commands, self.held)

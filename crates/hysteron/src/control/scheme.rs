@@ -45,10 +45,12 @@ pub struct Scheme {
     /// `None` for sensors without noise, where an unchanged reading is normal: equal readings are
     /// valid then, and a missing reading counts as broken at once.
     pub stuck_s: Option<f64>,
-    /// Whether readings of the output that are far from the last one, and that the model does not
-    /// expect, are taken as missing until two more agree with them. So a spike does not move the
-    /// drive. A plant that jumps from one sample to the next is then believed two samples late.
-    pub gate: bool,
+    /// A gate against spikes: readings of the output that are far from where the last ones lead, and
+    /// that the model does not expect, are taken as missing until two more agree with them. So a
+    /// spike does not move the drive, and a plant that jumps is believed two samples late. *Far* is
+    /// ten standard deviations of the noise, and this size at least, in the output's unit. `None`
+    /// for no gate.
+    pub gate: Option<f64>,
     /// The fastest change of the drive, in its unit per second; `None` for no such limit.
     pub slew: Option<f64>,
     /// Samples until a drive moves the output that is read. So many samples ahead is the target
@@ -74,7 +76,7 @@ impl Scheme {
             inner: None,
             filter_s: 0.0,
             stuck_s: None,
-            gate: false,
+            gate: None,
             slew: None,
             delay: 0,
         }
@@ -103,6 +105,10 @@ impl Scheme {
             "`stuck_s` must be above zero",
         )?;
         require(self.slew.is_none_or(positive), "`slew` must be above zero")?;
+        require(
+            self.gate.is_none_or(from_zero),
+            "`gate` must be zero or above",
+        )?;
         require(self.bias.is_finite(), "`bias` must be a finite number")?;
         require(
             range(self.commands),

@@ -1,8 +1,10 @@
 //! Notices an output that stands still to the last bit where it has to move.
 
-/// Without a model: the drive has gone this share of its way to a limit, and of its range.
-const WAY: f64 = 0.5;
+/// Without a model: the drive has gone this share of its way to a limit, or of its range.
+const WAY: f64 = 0.45;
 const RANGE: f64 = 0.02;
+/// And it goes no further than this share of the way, or of the range.
+const ROOM: f64 = 0.5;
 /// With a model: it expects a change by this share of its output's range.
 const EXPECTED: f64 = 0.05;
 
@@ -26,14 +28,17 @@ pub(super) struct Standstill {
     since: Option<(f64, Cause)>,
     /// For how many samples and s the output should have moved.
     still: (u32, f64),
+    /// Whether the last reading was the one before it.
+    repeats: bool,
 }
 
 impl Standstill {
     /// How long the output has stood still where it should have moved, s; `None` where it is not
     /// stuck. `dt` is the time since the last sample.
     pub(super) fn push(&mut self, reading: f64, cause: Cause, dt: f64) -> Option<f64> {
+        self.repeats = self.since.is_some_and(|(last, _)| last == reading);
         match self.since {
-            Some((last, before)) if last == reading => {
+            Some((_, before)) if self.repeats => {
                 let (count, time) = self.still;
                 if count > 0 || should_move(before, cause) {
                     self.still = (count.saturating_add(1), time + dt);
@@ -48,6 +53,22 @@ impl Standstill {
     pub(super) fn stuck_s(&self) -> Option<f64> {
         let (count, time) = self.still;
         (count >= CHANCE).then_some(time)
+    }
+}
+
+impl Standstill {
+    /// Where the drive may go while the output stands still and no model says whether it should: so
+    /// a stuck sensor does not drive to a limit.
+    pub(super) fn room(&self) -> Option<(f64, f64)> {
+        let (_, cause) = self.since.filter(|_| self.repeats)?;
+        let (low, high) = cause.drives;
+        let least = RANGE * (high - low);
+        let (below, above) = (ROOM * (cause.drive - low), ROOM * (high - cause.drive));
+        let room = (
+            cause.drive - below.max(least),
+            cause.drive + above.max(least),
+        );
+        cause.expected.is_none().then_some(room)
     }
 }
 
@@ -112,6 +133,28 @@ mod tests {
                 .is_some_and(|time| (time - 0.4).abs() < 1e-9)
         );
         assert_eq!(still.push(1.1, expected(2.0), 0.1), None);
+    }
+
+    #[test]
+    fn a_drive_that_keeps_to_its_room_is_noticed() {
+        for start in [0.0, 0.1, 0.5, 0.9] {
+            let mut still = Standstill::default();
+            still.push(1.0, drive(start), 0.1);
+            assert_eq!(still.room(), None);
+            still.push(1.0, drive(start), 0.1);
+            let (low, high) = still.room().unwrap_or_default();
+            for end in [low, high] {
+                let mut still = still.clone();
+                let found = [0; 4]
+                    .map(|_| still.push(1.0, drive(end), 0.1))
+                    .last()
+                    .copied();
+                // Where there is hardly any way, there is no need.
+                let way = (end - start).abs();
+                assert_eq!(found.flatten().is_some(), way > 0.021, "{start} {end}");
+            }
+            assert!((low > 0.0 || start < 0.03) && high < 1.0);
+        }
     }
 
     #[test]
