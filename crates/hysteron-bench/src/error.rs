@@ -10,7 +10,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[non_exhaustive]
 pub enum Error {
     /// A key of the file has a value that no run can have.
-    #[error("{}{}: `{field}`: {problem}", path.display(), line.map(|line| format!(", line {line}")).unwrap_or_default())]
+    #[error("{}{}: `{field}`: {problem}", path.display(), at(*.line))]
     Config {
         /// The file.
         path: PathBuf,
@@ -41,4 +41,8 @@ pub enum Error {
 pub(crate) fn of_file(path: &std::path::Path, source: std::io::Error) -> Error {
     let path = path.to_owned();
     hysteron::Error::File { path, source }.into()
+}
+
+fn at(line: Option<u64>) -> String {
+    line.map_or(String::new(), |line| format!(", line {line}"))
 }

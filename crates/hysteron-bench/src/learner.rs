@@ -52,8 +52,8 @@ impl Beside {
         })
     }
 
-    /// Hands a sample on. A learner that has fallen too far behind gets no more: with a gap it would
-    /// not know where the actuator is.
+    /// Hands a sample on. A learner that has fallen too far behind gets no more: with a gap it
+    /// would not know where the actuator is.
     pub(crate) fn push(&mut self, sample: Sample, measured: Option<f64>) {
         if let Some(samples) = &self.samples
             && let Err(TrySendError::Full(_)) = samples.try_send((sample, measured))

@@ -53,6 +53,14 @@ pub(crate) fn claim(path: &Path, force: bool) -> Result<()> {
         let what = "there is no such folder to write to";
         return Err(of_file(path, io::Error::new(io::ErrorKind::NotFound, what)));
     }
+    let rows = rows_of(path);
+    if !force && is_parquet(path) && rows.exists() {
+        let what = "these are the rows of a run that was killed: go on with --resume, or lose them";
+        return Err(of_file(
+            &rows,
+            io::Error::new(io::ErrorKind::AlreadyExists, what),
+        ));
+    }
     match force || special || regular.is_err() || Companion::knows(path) {
         true => Ok(()),
         false => {

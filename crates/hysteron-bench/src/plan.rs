@@ -284,7 +284,7 @@ impl Made {
     }
 }
 
-/// How far the output goes: through the reference, or through the model's range where that is wider.
+/// How far the output goes: through the reference, or the model's range where that is wider.
 fn scale(sources: &Sources) -> f64 {
     let width = |(low, high): (f64, f64)| high - low;
     let course = sources.course.as_ref().map(Course::range);

@@ -5,21 +5,19 @@ use crate::config::{Config, Mode};
 use crate::device::{self, Line, Received};
 use crate::end::{End, Stop};
 use crate::error::{Error, Result};
+use crate::handshake::ask;
 use crate::jitter::Jitter;
 use crate::learner::Beside;
 use crate::log::{self, Log};
 use crate::plan::{Plan, Sources};
-use crate::protocol::{FromDevice, Header, Sample, ToDevice, drive_text, opened};
+use crate::protocol::{FromDevice, Sample, ToDevice, drive_text, opened};
 use crate::row::{Answer, At, columns, replay};
+use crate::summary::{Options, Seen, Summary, log_path};
 use hysteron::control::Reading;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How long a device may take to say who it is, and how often it is asked: a board restarts when its
-/// port is opened.
-const ANSWER: Duration = Duration::from_secs(10);
-const AGAIN: Duration = Duration::from_secs(1);
 /// How long a device may take to its first sample.
 const FIRST: Duration = Duration::from_secs(5);
 /// How often somebody who stops the run is looked for.
@@ -28,64 +26,6 @@ const LOOK: Duration = Duration::from_millis(20);
 const LEAVE: Duration = Duration::from_secs(1);
 /// Drives that the device may name later.
 const REMEMBERED: usize = 4096;
-
-/// What the command adds to a file.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// The log, in place of the file's.
-    pub log: Option<PathBuf>,
-    /// Whether any file there is replaced.
-    pub force: bool,
-    /// Whether to go on with the log that is there.
-    pub resume: bool,
-}
-
-/// What somebody at a terminal sees of a sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen<'a> {
-    /// Time of the run, s.
-    pub elapsed_s: f64,
-    /// When the run will end, s; `None` where nobody knows.
-    pub end_s: Option<f64>,
-    /// What is due; NaN in mode monitor.
-    pub reference: f64,
-    /// What was read.
-    pub output: f64,
-    /// The drive that was sent.
-    pub drive: f64,
-    /// What learns, or that the fixed model is used; empty without a learner.
-    pub learner: &'a str,
-    /// Root mean square jitter of the intervals, s; `None` for a device that keeps no clock.
-    pub jitter_s: Option<f64>,
-}
-
-/// What a run came to.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Summary {
-    /// How it ended.
-    pub end: End,
-    /// Samples in the log of this run.
-    pub samples: u64,
-    /// Samples whose numbers never came.
-    pub lost: u64,
-    /// Samples that came again, or late.
-    pub old: u64,
-    /// Lines with a wrong check, too long, or of no meaning.
-    pub bad: u64,
-    /// Root mean square of reference less output, in mode control.
-    pub rmse: Option<f64>,
-    /// Share of the samples that the learner was used for; `None` without one.
-    pub learned: Option<f64>,
-    /// Root mean square jitter of the intervals, s, by the host's clock; `None` for a device that
-    /// keeps none.
-    pub jitter_s: Option<f64>,
-    /// The slowest answer, s.
-    pub slowest_s: f64,
-    /// The gains found from the model and their margin.
-    pub tuned: Option<(hysteron::control::Gains, f64)>,
-    /// The log.
-    pub log: PathBuf,
-}
 
 /// Runs what a file says until it ends, however that is. `remark` is told what somebody should know
 /// before it begins, `observe` each sample.
@@ -134,89 +74,6 @@ pub fn run(
     Ok(session.finish(end))
 }
 
-/// What a run would do, as lines for people. Nothing is opened and nothing is sent.
-///
-/// # Errors
-/// As [`run`], for what is known without a device.
-pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
-    let path = log_path(config, options)?;
-    let sources = Sources::read(config)?;
-    if !options.resume {
-        log::claim(&path, options.force)?;
-    }
-    let or = |value: Option<String>, other: &str| value.unwrap_or_else(|| other.to_owned());
-    let range = |range: Option<(f64, f64)>| range.map(|(low, high)| format!("{low} to {high}"));
-    let seconds = |value: Option<f64>| value.map(|value| format!("{value} s"));
-    let mode = match config.mode {
-        Mode::Record => "record: plays a profile",
-        Mode::Control => "control: follows a reference",
-        Mode::Monitor => "monitor: the drive stays safe",
-    };
-    let mut lines = vec![
-        format!("mode      {mode}"),
-        format!("device    {}", device::name(config)),
-        format!("log       {}", path.display()),
-    ];
-    if let Some(course) = &sources.course {
-        let (low, high) = course.range();
-        lines.push(format!(
-            "course    {low} to {high}, until {} s",
-            course.end_s()
-        ));
-    }
-    let course_end = sources.course.as_ref().map(|course| course.end_s());
-    lines.push(format!(
-        "duration  {}",
-        or(
-            seconds(config.duration_s.or(course_end)),
-            "until it is stopped"
-        )
-    ));
-    lines.push(format!(
-        "drive     {}; slew {}",
-        or(range(config.limits.drive), "as the device says"),
-        or(
-            config.limits.slew.map(|slew| format!("{slew} per s")),
-            "not limited"
-        ),
-    ));
-    lines.push(format!(
-        "output    {}",
-        or(range(config.limits.output), "not limited")
-    ));
-    if let (Some(options), Mode::Control) = (&config.controller, config.mode) {
-        let gains = match options.gains().filter(|_| options.kind.has_pid()) {
-            Some(crate::Tuning::Model) => "gains from the model".into(),
-            Some(crate::Tuning::Numbers(gains)) => format!(
-                "gain {}, integral time {} s, derivative time {} s",
-                gains.gain, gains.integral_s, gains.derivative_s
-            ),
-            None => "no PID".to_owned(),
-        };
-        lines.push(format!("control   {}; {gains}", options.kind.words()));
-    }
-    lines.push(format!(
-        "safety    lost after {}; stuck after {}",
-        or(seconds(config.safety.lost_s), "0.5 s, at least 5 samples"),
-        or(seconds(config.safety.stuck_s), "1 s, at least 5 samples"),
-    ));
-    for (what, message) in [
-        ("who", ToDevice::Who),
-        ("go", ToDevice::Go),
-        ("quit", ToDevice::Quit),
-    ] {
-        lines.push(format!("would send {what}: {}", message.line().trim_end()));
-    }
-    lines.push("would send a drive for each sample, within these limits; nothing was sent".into());
-    Ok(lines)
-}
-
-fn log_path(config: &Config, options: &Options) -> Result<PathBuf> {
-    let own = config.log.as_ref().map(|path| config.at(path));
-    let path = options.log.clone().or(own);
-    path.ok_or_else(|| config.refused("log", "no log is named: here, or with -o"))
-}
-
 /// Asks the device who it is, and plans the run for it.
 fn begin(config: &Config, sources: Sources, line: &mut dyn Line, stop: &Stop) -> Result<Plan> {
     let header = ask(line, stop).map_err(|problem| match problem {
@@ -227,37 +84,6 @@ fn begin(config: &Config, sources: Sources, line: &mut dyn Line, stop: &Stop) ->
         },
     })?;
     Plan::new(config, sources, header)
-}
-
-/// Who the device is; `None` in the error for somebody who stopped it.
-fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Header, Option<String>> {
-    let start = Instant::now();
-    let mut asked = None;
-    while start.elapsed() < ANSWER {
-        if stop.is_set() {
-            return Err(None);
-        }
-        if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
-            let sent = line.send(&ToDevice::Who.line());
-            sent.map_err(|error| Some(format!("it cannot be asked who it is: {error}")))?;
-            asked = Some(Instant::now());
-        }
-        match line.receive(Instant::now() + LOOK) {
-            // A board that was running says other things first.
-            Received::Line(bytes, _) => {
-                if let Some(FromDevice::Header(header)) = opened(&bytes).and_then(FromDevice::parse)
-                {
-                    return header.map_err(Some);
-                }
-            }
-            Received::Silence => {}
-            Received::Closed => return Err(Some("it ended before it said who it is".into())),
-        }
-    }
-    Err(Some(format!(
-        "it did not say who it is within {} s",
-        ANSWER.as_secs()
-    )))
 }
 
 struct Session {

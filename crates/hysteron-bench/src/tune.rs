@@ -55,10 +55,10 @@ impl<'a> Plant<'a> {
     }
 }
 
-/// Gains for the loop of `scheme` around `model`. A relay test on the model (Åström & Hägglund 1984)
-/// gives the first (Tyreus & Luyben 1992); then the whole loop, with the inverse where it has one and
-/// the noise of the fit, runs up and down through the model's range, and the gains are lowered until
-/// they may double.
+/// Gains for the loop of `scheme` around `model`. A relay test on the model (Åström & Hägglund
+/// 1984) gives the first (Tyreus & Luyben 1992). Then the whole loop, with the inverse where it has
+/// one and the noise of the fit, runs up and down through the model's range, and the gains are
+/// lowered until they may double.
 pub(crate) fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
     let first = relay(model, scheme)?;
     let run = |gains: Option<Gains>| travel(model, scheme, gains, inverse);
@@ -114,7 +114,7 @@ fn relay(model: &Model, scheme: &Scheme) -> Result<Gains> {
     }
     let found = test.oscillation().filter(|(gain, _)| gain.is_finite());
     let (gain, period) = found.ok_or_else(|| {
-        untuned("the model's output does not follow a relay between a quarter and three quarters of the drives")
+        untuned("the model does not follow a relay between 1/4 and 3/4 of the drives")
     })?;
     let gains = Gains::from_oscillation(gain, period * scheme.interval_s);
     Ok(Gains {

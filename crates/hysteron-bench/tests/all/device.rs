@@ -64,7 +64,7 @@ pub const SAFE: f64 = 0.5;
 pub const HEADER: &str =
     "H 1 name=test dt=0.05 drive=0:10[V] safe=0.5 watchdog=1 columns=output[mm],temperature[degC]";
 
-/// A lag of 0.2 s with a gain of 2, with noise of 0.002 and steps of 0.5 in its readings' last digit.
+/// A lag of 0.2 s with a gain of 2, read with a noise of 0.002.
 #[derive(Default)]
 struct Board {
     faults: Vec<(u64, Fault)>,

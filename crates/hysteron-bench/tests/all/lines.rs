@@ -66,7 +66,8 @@ fn noise_is_never_a_line_and_never_a_panic() {
 
 #[test]
 fn a_header_says_what_is_wrong_with_it() {
-    let good = "H 1 name=wire dt=0.05 drive=0:0.12[A2] safe=0 watchdog=1 columns=output[mm],temperature[degC]";
+    let good = "H 1 name=wire dt=0.05 drive=0:0.12[A2] safe=0 watchdog=1 \
+                columns=output[mm],temperature[degC]";
     let Some(FromDevice::Header(Ok(header))) = FromDevice::parse(good) else {
         panic!("{good}");
     };

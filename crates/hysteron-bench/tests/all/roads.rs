@@ -73,7 +73,8 @@ fn a_child_does_not_outlive_its_run() {
     let header = closed("H 1 dt=0.05 drive=0:10 safe=0.5 columns=output,temperature");
     let sample = closed("S 1 0.05 0 1.0 20");
     let script = format!(
-        "trap '' TERM INT HUP; read a; printf '%b' \"{header}{sample}\"; echo $$ > pid; sleep 300 & wait; sleep 300"
+        "trap '' TERM INT HUP; read a; printf '%b' \"{header}{sample}\"; echo $$ > pid; \
+         sleep 300 & wait; sleep 300"
     );
     let (folder, found) = ran(PID, &child(&script.replace('\n', "\\n")));
     assert_eq!(found.unwrap().word(), "lost");

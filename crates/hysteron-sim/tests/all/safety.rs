@@ -69,7 +69,7 @@ fn drives(
     scheme: Scheme,
     from: f64,
     reference: impl Fn(usize) -> f64,
-    spoil: impl Fn(usize, f64) -> f64,
+    mut spoil: impl FnMut(usize, f64) -> f64,
 ) -> Vec<f64> {
     let (plant, mut state) = (model(0.33), model(0.33).start());
     let (mut controller, mut output, mut drive) = (Controller::new(scheme).unwrap(), 0.5, from);
@@ -155,8 +155,14 @@ fn a_stuck_or_lost_output_never_drives_to_a_limit() {
         for at in [60, 90, 120] {
             let plain = drives(scheme.clone(), 0.0, sine, |_, y| y);
             let most = plain.iter().copied().fold(0.0, f64::max);
-            for spoil in [|_| 1.5, |_| f64::NAN] as [fn(f64) -> f64; 2] {
-                let broken = |n, y| if n >= at { spoil(y) } else { y };
+            for lost in [false, true] {
+                let mut last = f64::NAN;
+                let broken = |n, y| {
+                    if n < at {
+                        last = y;
+                    }
+                    if n >= at && lost { f64::NAN } else { last }
+                };
                 let found = drives(scheme.clone(), 0.0, sine, broken);
                 let largest = found[at..].iter().copied().fold(0.0, f64::max);
                 // Half of the way from where it stood is left, and the feedforward goes on.

@@ -318,7 +318,8 @@ impl Controller {
 
     /// How long the output has stood still to the last bit where it has to move, s; `None` where
     /// its sensor works. It has to move where the model expects 5 % of its range; without a model,
-    /// where the drive has gone almost half its way to a limit since. It goes no further than that.
+    /// where the drive has gone almost half its way to a limit since, and no further, once the
+    /// sensor has shown that it works.
     #[must_use]
     pub fn stuck_s(&self) -> Option<f64> {
         self.standstill.stuck_s()

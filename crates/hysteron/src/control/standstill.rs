@@ -8,6 +8,9 @@ const ROOM: f64 = 0.5;
 /// With a model: it expects a change by this share of its output's range.
 const EXPECTED: f64 = 0.05;
 
+/// Without a model: a sensor that has given so many readings is alive. One that has not may be in
+/// front of a dead band.
+const ALIVE: u32 = 10;
 /// So many equal readings in a row are no chance, and no lag of the plant.
 const CHANCE: u32 = 3;
 
@@ -30,6 +33,8 @@ pub(super) struct Standstill {
     still: (u32, f64),
     /// Whether the last reading was the one before it.
     repeats: bool,
+    /// Readings that were new.
+    new: u32,
 }
 
 impl Standstill {
@@ -40,11 +45,14 @@ impl Standstill {
         match self.since {
             Some((_, before)) if self.repeats => {
                 let (count, time) = self.still;
-                if count > 0 || should_move(before, cause) {
+                if count > 0 || self.should_move(before, cause) {
                     self.still = (count.saturating_add(1), time + dt);
                 }
             }
-            _ => (self.since, self.still) = (Some((reading, cause)), (0, 0.0)),
+            _ => {
+                (self.since, self.still) = (Some((reading, cause)), (0, 0.0));
+                self.new = self.new.saturating_add(1);
+            }
         }
         self.stuck_s()
     }
@@ -54,9 +62,7 @@ impl Standstill {
         let (count, time) = self.still;
         (count >= CHANCE).then_some(time)
     }
-}
 
-impl Standstill {
     /// Where the drive may go while the output stands still and no model says whether it should: so
     /// a stuck sensor does not drive to a limit.
     pub(super) fn room(&self) -> Option<(f64, f64)> {
@@ -68,21 +74,21 @@ impl Standstill {
             cause.drive - below.max(least),
             cause.drive + above.max(least),
         );
-        cause.expected.is_none().then_some(room)
+        (cause.expected.is_none() && self.new >= ALIVE).then_some(room)
     }
-}
 
-fn should_move(before: Cause, now: Cause) -> bool {
-    if let (Some((then, _)), Some((expected, (low, high)))) = (before.expected, now.expected) {
-        return (expected - then).abs() > EXPECTED * (high - low);
+    fn should_move(&self, before: Cause, now: Cause) -> bool {
+        if let (Some((then, _)), Some((expected, (low, high)))) = (before.expected, now.expected) {
+            return (expected - then).abs() > EXPECTED * (high - low);
+        }
+        let (low, high) = now.drives;
+        let moved = now.drive - before.drive;
+        let way = match moved > 0.0 {
+            true => high - before.drive,
+            false => before.drive - low,
+        };
+        self.new >= ALIVE && moved.abs() > (WAY * way).max(RANGE * (high - low))
     }
-    let (low, high) = now.drives;
-    let moved = now.drive - before.drive;
-    let way = match moved > 0.0 {
-        true => high - before.drive,
-        false => before.drive - low,
-    };
-    moved.abs() > (WAY * way).max(RANGE * (high - low))
 }
 
 #[cfg(test)]
@@ -96,6 +102,15 @@ mod tests {
             drive,
             drives,
         }
+    }
+
+    /// After some readings with a drive.
+    fn alive(at: f64) -> Standstill {
+        let mut still = Standstill::default();
+        for n in 0..ALIVE {
+            still.push(2.0 + f64::from(n), drive(at), 0.1);
+        }
+        still
     }
 
     fn expected(output: f64) -> Cause {
@@ -122,6 +137,13 @@ mod tests {
     }
 
     #[test]
+    fn a_dead_band_at_the_beginning_is_crossed() {
+        let mut still = Standstill::default();
+        assert!((0..=100).all(|n| still.push(1.0, drive(0.01 * f64::from(n)), 0.1).is_none()));
+        assert_eq!(still.room(), None);
+    }
+
+    #[test]
     fn one_that_should_have_moved_is_stuck_until_it_moves() {
         let mut still = Standstill::default();
         let outputs = [2.0, 3.0, 2.0, 3.0, 2.0];
@@ -138,7 +160,7 @@ mod tests {
     #[test]
     fn a_drive_that_keeps_to_its_room_is_noticed() {
         for start in [0.0, 0.1, 0.5, 0.9] {
-            let mut still = Standstill::default();
+            let mut still = alive(start);
             still.push(1.0, drive(start), 0.1);
             assert_eq!(still.room(), None);
             still.push(1.0, drive(start), 0.1);
@@ -161,7 +183,7 @@ mod tests {
     fn the_drive_never_comes_to_a_limit_before_it_is_noticed() {
         for start in [0.0, 0.1, 0.5, 0.9] {
             for way in [-1.0, 1.0] {
-                let (mut still, mut at) = (Standstill::default(), start);
+                let (mut still, mut at) = (alive(start), start);
                 while still.push(1.0, drive(at), 0.1).is_none() && (0.0..=1.0).contains(&at) {
                     at += 0.001 * way;
                 }
