@@ -73,6 +73,20 @@ pub(crate) fn claim(path: &Path, force: bool) -> Result<()> {
     }
 }
 
+/// Refuses to go on with a log of columns that is whole: only its rows could be added to.
+///
+/// # Errors
+/// [`hysteron::Error::File`].
+pub(crate) fn resumable(path: &Path) -> Result<()> {
+    match is_parquet(path) && !rows_of(path).exists() {
+        false => Ok(()),
+        true => {
+            let what = "a Parquet file that is whole cannot be added to: log to a .csv to resume";
+            Err(of_file(path, io::Error::other(what)))
+        }
+    }
+}
+
 impl Log {
     /// A new log with a first row of names.
     ///
@@ -98,9 +112,6 @@ impl Log {
     /// [`hysteron::Error::File`].
     pub(crate) fn reopen(path: &Path) -> Result<Self> {
         let rows = rows_of(path);
-        if is_parquet(path) && !rows.exists() {
-            as_text(path, &rows)?;
-        }
         let failed = |source| of_file(&rows, source);
         let mut file = OpenOptions::new()
             .read(true)
@@ -191,14 +202,4 @@ fn as_parquet(rows: &Path, path: &Path) -> Result<()> {
         written.row(cells.collect::<Vec<_>>())?;
     }
     Ok(written.finish()?)
-}
-
-fn as_text(path: &Path, rows: &Path) -> Result<()> {
-    let mut table = TableReader::open(path)?;
-    let mut text = table.header().join(",") + "\n";
-    while table.advance()? {
-        let cells: Vec<_> = table.row().cells().map(String::from_utf8_lossy).collect();
-        text += &(cells.join(",") + "\n");
-    }
-    std::fs::write(rows, text).map_err(|source| of_file(rows, source))
 }

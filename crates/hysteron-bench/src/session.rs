@@ -54,7 +54,10 @@ pub fn run(
     let path = log_path(config, options)?;
     let sources = Sources::read(config)?;
     let before = match options.resume {
-        true => Some(Companion::of(&path)?),
+        true => {
+            log::resumable(&path)?;
+            Some(Companion::of(&path)?)
+        }
         false => log::claim(&path, options.force).map(|()| None)?,
     };
     let mut line = device::open(config)?;

@@ -64,7 +64,8 @@ fn noise(n: usize) -> f64 {
     turns - turns.floor() - 0.5
 }
 
-/// The drives of a loop around a lag of 0.3 s behind `plant`; `spoil` changes the readings.
+/// The drives of a loop around a lag of 0.3 s behind a model, until a run would be given up; `spoil`
+/// changes the readings.
 fn drives(
     scheme: Scheme,
     from: f64,
@@ -74,17 +75,25 @@ fn drives(
     let (plant, mut state) = (model(0.33), model(0.33).start());
     let (mut controller, mut output, mut drive) = (Controller::new(scheme).unwrap(), 0.5, from);
     controller.go_on_from(from).unwrap();
-    let step = |n: usize| {
+    let (mut found, mut lost_s) = (Vec::new(), 0.0);
+    for n in 0..300 {
         let still = plant.step(&mut state, drive).unwrap().output;
         output += DT / 0.3 * (still - output);
         let reading = read(spoil(n, output + 0.01 * noise(n)));
-        drive = controller
-            .step_after(DT, at(reference(n)), &[], reading)
-            .unwrap()
-            .drive;
-        drive
-    };
-    (0..300).map(step).collect()
+        let action = controller.step_after(DT, at(reference(n)), &[], reading);
+        drive = action.unwrap().drive;
+        found.push(drive);
+        lost_s = if reading.output.is_nan() {
+            lost_s + DT
+        } else {
+            0.0
+        };
+        // A run is given up then, and its drive goes safe.
+        if lost_s >= 0.5 || controller.stuck_s().is_some_and(|time| time >= 1.0) {
+            break;
+        }
+    }
+    found
 }
 
 fn sine(n: usize) -> f64 {
@@ -165,7 +174,7 @@ fn a_stuck_or_lost_output_never_drives_to_a_limit() {
                 };
                 let found = drives(scheme.clone(), 0.0, sine, broken);
                 let largest = found[at..].iter().copied().fold(0.0, f64::max);
-                // Half of the way from where it stood is left, and the feedforward goes on.
+                // Half of the way from where it stood is left.
                 let left = most + 0.62 * (10.0 - most);
                 assert!(largest < left, "{:?} at {at}: {largest} {most}", scheme.pid);
             }

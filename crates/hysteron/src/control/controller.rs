@@ -481,7 +481,7 @@ impl Controller {
         }
         self.smooth(changed, feedforward);
         let error = measured.map(|measured| target.output - measured);
-        if let Some(from) = self.from_command() {
+        if let Some(from) = self.begins_at() {
             if self.pid.is_some() && measured.is_none() {
                 // The loop is not closed before its first reading.
                 let (low, high) = self.scheme.commands;
@@ -520,7 +520,7 @@ impl Controller {
 
     /// The command to begin from, where the loop goes on from another drive. The command of an
     /// inner loop is no drive: it begins where it was last.
-    fn from_command(&self) -> Option<f64> {
+    fn begins_at(&self) -> Option<f64> {
         let drive = self.from?;
         match self.scheme.inner {
             None => Some(drive),

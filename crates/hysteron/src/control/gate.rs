@@ -55,7 +55,7 @@ impl Gate {
         let width = self.width();
         self.remember(deviation.abs());
         let above = deviation > 0.0;
-        if deviation.abs() > width && !((change - expected()).abs() <= width) {
+        if deviation.abs() > width && !within(change - expected(), width) {
             self.beyond = match self.beyond {
                 (count, side) if side == above => (count + 1, side),
                 _ => (1, above),
@@ -91,6 +91,11 @@ impl Gate {
         }
         self.next = (self.next + 1) % REMEMBERED;
     }
+}
+
+/// NaN is within nothing.
+fn within(size: f64, width: f64) -> bool {
+    size.abs() <= width
 }
 
 #[cfg(test)]
