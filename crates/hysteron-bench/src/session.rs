@@ -485,15 +485,10 @@ impl Session {
         }
         let _ = line.send(&ToDevice::Quit.line());
         let deadline = Instant::now() + LEAVE;
-        loop {
-            match line.receive(deadline) {
-                Received::Line(bytes, _) => {
-                    let said = opened(&bytes).and_then(FromDevice::parse);
-                    if matches!(said, Some(FromDevice::End(_))) || Instant::now() >= deadline {
-                        break;
-                    }
-                }
-                Received::Silence | Received::Closed => break,
+        while let Received::Line(bytes, _) = line.receive(deadline) {
+            let said = opened(&bytes).and_then(FromDevice::parse);
+            if matches!(said, Some(FromDevice::End(_))) || Instant::now() >= deadline {
+                break;
             }
         }
         let how = line.close(Instant::now() + LEAVE);

@@ -16,7 +16,8 @@ fn every_fault_ends_as_it_has_to() {
     let plain = drives(&bench(PID, &[]));
     println!("| Fault | Times | Drive | Samples lost | End |\n| --- | --- | --- | --- | --- |");
     let seven = |fault: Fault| (0..7).map(|n| (12 + 6 * n, fault)).collect::<Vec<_>>();
-    let cases: [(&str, Vec<(u64, Fault)>, &str); 15] = [
+    type Case = (&'static str, Vec<(u64, Fault)>, &'static str);
+    let cases: [Case; 15] = [
         ("none", vec![], "done"),
         ("a sample is dropped", seven(Fault::Drop), "done"),
         ("a sample comes twice", seven(Fault::Double), "done"),

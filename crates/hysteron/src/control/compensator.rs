@@ -211,6 +211,15 @@ impl Compensator {
         }
     }
 
+    /// The output that a model which learns nothing expected at the last input, where there is one:
+    /// a learner may have learned from a reading that stands still.
+    pub(super) fn prediction(&self) -> f64 {
+        match &self.kind {
+            Kind::Shadow(shadow) => shadow.fixed.prediction,
+            _ => self.prediction,
+        }
+    }
+
     /// The range of the outputs of the model at its beginning.
     pub(super) fn output_range(&self) -> (f64, f64) {
         match &self.kind {

@@ -382,7 +382,7 @@ impl Controller {
         let compensator = self.scheme.compensator.as_ref();
         let expected = compensator.and_then(|compensator| {
             let range = compensator.output_range();
-            let expected = self.prediction;
+            let expected = compensator.prediction();
             (expected.is_finite() && input.is_some()).then_some((expected, range))
         });
         // The drive of an inner loop goes up and down by itself.
