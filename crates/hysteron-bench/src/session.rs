@@ -107,7 +107,9 @@ struct Session {
     /// Readings beyond the limits in a row.
     beyond: u32,
     jitter: Jitter,
+    /// Squared errors of the readings that were believed, and how many these are.
     squares: f64,
+    compared: u64,
     learned: u64,
     counts: Counts,
 }
@@ -160,6 +162,7 @@ impl Session {
             beyond: 0,
             jitter: Jitter::default(),
             squares: 0.0,
+            compared: 0,
             learned: 0,
             counts: Counts::default(),
             plan,
@@ -421,8 +424,9 @@ impl Session {
         }
         let compensator = plan.controller.compensator();
         let learner_used = compensator.is_some_and(|found| found.trusts_learner());
-        if output.is_finite() {
+        if output.is_finite() && !action.status.rejected {
             self.squares += (reference - output) * (reference - output);
+            self.compared += 1;
         }
         Ok(Answer {
             drive: action.drive,
@@ -535,7 +539,8 @@ impl Session {
             lost,
             old,
             bad,
-            rmse: (self.plan.mode == Mode::Control).then(|| (self.squares / count).sqrt()),
+            rmse: (self.plan.mode == Mode::Control && self.compared > 0)
+                .then(|| (self.squares / self.compared as f64).sqrt()),
             learned: learner.map(|_| self.learned as f64 / count),
             jitter_s: self.jitter.rms_s(),
             slowest_s: self.jitter.slowest_s(),

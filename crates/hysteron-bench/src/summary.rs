@@ -48,7 +48,8 @@ pub struct Summary {
     pub old: u64,
     /// Lines with a wrong check, too long, or of no meaning.
     pub bad: u64,
-    /// Root mean square of reference less output, in mode control.
+    /// Root mean square of reference less output, in mode control, over the readings that were
+    /// believed.
     pub rmse: Option<f64>,
     /// Share of the samples that the learner was used for; `None` without one.
     pub learned: Option<f64>,
