@@ -190,7 +190,7 @@ fn the_drive_keeps_to_its_slew_and_the_integral_does_not_wind_up() {
             slew: Some(slew),
             ..scheme
         };
-        let square = |n: usize| if n / 60 % 2 == 0 { 1.0 } else { 5.0 };
+        let square = |n: usize| if (n / 60).is_multiple_of(2) { 1.0 } else { 5.0 };
         let drives = drives(slow, 0.0, square, |_, y| y);
         for pair in drives.windows(2) {
             assert!((pair[1] - pair[0]).abs() <= slew * DT + 1e-12);

@@ -158,6 +158,7 @@ fn a_controller_says_which_reading_was_rejected() {
         inner: None,
         filter_s: 0.0,
         stuck_s: None,
+        ..Scheme::new(1.0, (20.0, 80.0))
     })
     .unwrap();
     let target = Reference {
