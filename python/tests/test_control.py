@@ -149,17 +149,22 @@ def test_a_device_that_is_a_wrapped_plant_gives_the_same_run(identified):
     assert np.array_equal(whole.measured, wrapped.measured)
 
 
-def test_what_a_device_raises_is_raised():
+@pytest.mark.parametrize("error", [OSError("unplugged"), KeyboardInterrupt()])
+@pytest.mark.parametrize(
+    "limits, rest", [((-5.0, 5.0), 0.0), ((1.0, 5.0), 1.0), ((-5.0, -1.0), -1.0)]
+)
+def test_what_a_device_raises_is_raised_and_the_drive_is_at_rest(error, limits, rest):
     class Broken(Stage):
         def read(self):
             if len(self.written) == 3:
-                raise OSError("unplugged")
+                raise error
             return super().read()
 
     stage = Broken()
-    with pytest.raises(OSError, match="unplugged"):
-        controller().run(stage, REFERENCE)
-    assert len(stage.written) == 3
+    with pytest.raises(type(error)):
+        Controller(INTERVAL, limits, pid=Pid(2.0)).run(stage, REFERENCE)
+    assert len(stage.written) == 4
+    assert stage.written[-1] == rest
 
 
 @pytest.mark.parametrize("read", [None, (None, None), (np.nan, None), np.float32(1.0), 1])

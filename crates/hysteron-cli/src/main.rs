@@ -17,6 +17,7 @@ mod prepare;
 mod progress;
 mod recording;
 mod remedy;
+mod run;
 mod shell;
 mod start;
 #[cfg(feature = "studio")]
@@ -42,6 +43,9 @@ fn main() -> ExitCode {
         if studio::stop() {
             return;
         }
+        if run::stop() {
+            return;
+        }
         hysteron::discard_unfinished();
         std::process::exit(130);
     });
@@ -57,6 +61,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Track(args) => track::run(&args),
+        Command::Run(args) => run::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Demo(args) => demo::run(&args),
         Command::Start(args) => start::run(&args),
@@ -68,6 +73,11 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<run::Ended>() => {
+            fail(format_args!("{error}"));
+            let code = error.downcast_ref().map_or(1, run::Ended::code);
+            ExitCode::from(code)
+        }
         Err(error) => {
             let what = remedy::text_of(error.as_ref());
             fail(format_args!("{what}{}", advice(error.as_ref())));

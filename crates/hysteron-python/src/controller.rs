@@ -126,6 +126,7 @@ impl Controller {
             }),
             filter_s,
             stuck_s,
+            ..Scheme::new(interval_s, commands)
         };
         let inner = Shared::new(control::Controller::new(scheme).raise()?);
         Ok(Self { inner, tolerance })
@@ -259,7 +260,7 @@ impl Controller {
     ///
     /// A simulated plant is advanced by `interval_s` for each sample. For any other device this is
     /// the loop `read`, `step`, `write`, and its `read` has to wait for the next sample. What the
-    /// device raises is raised here; the drive stays as last written.
+    /// device raises is raised here, and Ctrl-C too; before, the drive nearest to zero is written.
     ///
     /// Parameters
     /// ----------

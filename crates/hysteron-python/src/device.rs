@@ -10,7 +10,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The loop of `read`, `step`, `write`, one sample for each value of the reference.
+/// The loop of `read`, `step`, `write`, one sample for each value of the reference. What is raised in
+/// it leaves the device at rest.
 pub(crate) fn follow(
     py: Python<'_>,
     device: &Bound<'_, PyAny>,
@@ -21,6 +22,21 @@ pub(crate) fn follow(
         let needed = "an object with read() and write(drive)";
         return Err(another_kind("device", needed, device));
     }
+    let followed = each(py, device, controller, course);
+    if followed.is_err() {
+        let rest = controller.with(py, |controller| controller.rest_drive());
+        // The device may be gone, and the first error is the one to tell.
+        let _ = device.call_method1("write", (rest,));
+    }
+    followed
+}
+
+fn each(
+    py: Python<'_>,
+    device: &Bound<'_, PyAny>,
+    controller: &Shared<Controller>,
+    course: &Course<'_>,
+) -> PyResult<Trace> {
     let dt_s = controller.with(py, |controller| controller.interval_s());
     let (count, advance) = (course.reference.len(), device.getattr_opt("advance")?);
     let mut trace = Trace::default();

@@ -100,6 +100,14 @@ pub(crate) enum Command {
         \x20 hysteron track load-step --show > mine.toml\n\
         \x20 hysteron track mine.toml --seeds 5 -o mine")]
     Track(Track),
+    /// Run a profile or a controller on a device: a serial line, a program on a pipe, a socket
+    #[command(after_help = "Example:\n\
+        \x20 hysteron run bench.toml -o run.csv\n\n\
+        Exit codes: 0 all was run; 1 it could not begin, or the controller failed; 2 wrong usage;\n\
+        3 no valid reading for lost_s; 4 the output was stuck; 5 the output was beyond its limits;\n\
+        6 the device ended; 7 the line is gone; 8 the log cannot be written; 130 stopped.\n\
+        Whatever ends a run, the drive is safe and the log is whole.")]
+    Run(Run),
     /// Export a model: C for a microcontroller, a block for Simulink and other tools
     #[command(subcommand)]
     Export(Export),
@@ -365,6 +373,25 @@ pub(crate) struct Track {
     /// Folder for report, scores, curves of the first run, and model
     #[arg(short, long = "output", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Run {
+    /// The TOML file that says what to run
+    pub(crate) config: PathBuf,
+    /// Where the log goes (.csv or .parquet), in place of the file's `log`
+    #[arg(short, long = "output", value_name = "LOG")]
+    pub(crate) out: Option<PathBuf>,
+    /// Say what would be sent, the limits and the checks, and send nothing
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// Go on where the log ends: model, learner and numbers
+    #[arg(long, conflicts_with = "force")]
+    pub(crate) resume: bool,
     #[command(flatten)]
     pub(crate) force: Force,
     #[command(flatten)]

@@ -18,6 +18,7 @@ mod options;
 mod prepare;
 mod readers;
 mod replacing;
+mod run;
 mod segments;
 mod shell;
 mod start;

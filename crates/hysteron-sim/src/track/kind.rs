@@ -17,9 +17,12 @@ pub enum Kind {
     InversePid,
     /// Inverse and PID, *anticipate*.
     InversePidAnticipate,
+    /// Adaptive inverse alone, *hold*. Only where a scenario names it.
+    AdaptiveInverse,
     /// Adaptive inverse alone, *anticipate*. Only where a scenario names it.
     AdaptiveAnticipate,
     /// Adaptive inverse and PID, *hold*.
+    #[serde(alias = "adaptive-inverse-pid")]
     AdaptivePid,
     /// Adaptive inverse and PID, *anticipate*.
     AdaptivePidAnticipate,
@@ -47,6 +50,7 @@ impl Kind {
             Self::InverseAnticipate => "inverse, anticipate",
             Self::InversePid => "inverse + PID, hold",
             Self::InversePidAnticipate => "inverse + PID, anticipate",
+            Self::AdaptiveInverse => "adaptive inverse, hold",
             Self::AdaptiveAnticipate => "adaptive inverse, anticipate",
             Self::AdaptivePid => "adaptive inverse + PID, hold",
             Self::AdaptivePidAnticipate => "adaptive inverse + PID, anticipate",
@@ -62,23 +66,30 @@ impl Kind {
             Self::InverseAnticipate => "inverse-anticipate",
             Self::InversePid => "inverse-pid",
             Self::InversePidAnticipate => "inverse-pid-anticipate",
+            Self::AdaptiveInverse => "adaptive-inverse",
             Self::AdaptiveAnticipate => "adaptive-anticipate",
             Self::AdaptivePid => "adaptive-pid",
             Self::AdaptivePidAnticipate => "adaptive-pid-anticipate",
         }
     }
 
-    pub(super) fn has_pid(self) -> bool {
+    /// Whether a PID is in the loop.
+    #[must_use]
+    pub fn has_pid(self) -> bool {
         let alone = [
             Self::Inverse,
             Self::InverseAnticipate,
+            Self::AdaptiveInverse,
             Self::AdaptiveAnticipate,
         ];
         !alone.contains(&self)
     }
 
-    pub(super) fn adapts(self) -> bool {
+    /// Whether its model learns.
+    #[must_use]
+    pub fn adapts(self) -> bool {
         let adaptive = [
+            Self::AdaptiveInverse,
             Self::AdaptiveAnticipate,
             Self::AdaptivePid,
             Self::AdaptivePidAnticipate,
@@ -86,7 +97,9 @@ impl Kind {
         adaptive.contains(&self)
     }
 
-    pub(super) fn policy(self) -> Policy {
+    /// What its inverse does where the reference rests.
+    #[must_use]
+    pub fn policy(self) -> Policy {
         match self {
             Self::InverseAnticipate
             | Self::AdaptiveAnticipate

@@ -18,7 +18,8 @@ mod summary;
 mod tune;
 
 pub use kind::Kind;
-pub use options::{LoopOptions, ModelOptions, Tuning};
+pub use options::{LoopOptions, ModelOptions, Tuning, compensator};
+pub use place::{line_at, line_of};
 pub use plant::{Event, PlantOptions, course};
 pub use reference::Reference;
 pub use scenario::Scenario;
@@ -197,6 +198,7 @@ fn base(scenario: &Scenario) -> Result<Scheme> {
         inner: None,
         filter_s: scenario.shared.filter_s,
         stuck_s: (scenario.plant.noisy()).then_some(STUCK_SAMPLES * scenario.interval_s),
+        ..Scheme::new(scenario.interval_s, commands)
     })
 }
 

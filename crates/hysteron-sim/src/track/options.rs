@@ -64,7 +64,7 @@ pub enum Tuning {
 ///
 /// # Errors
 /// As [`AdaptOptions::adaptive`] and [`AdaptOptions::adaptive_load`].
-pub(super) fn compensator(options: &AdaptOptions, model: &Model) -> Result<Compensator> {
+pub fn compensator(options: &AdaptOptions, model: &Model) -> Result<Compensator> {
     Ok(match options.learner {
         Learner::Load => Compensator::load(options.adaptive_load(model)?),
         _ => Compensator::adaptive(options.adaptive(model)?),

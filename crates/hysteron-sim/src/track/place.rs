@@ -2,9 +2,10 @@
 
 use toml::de::{DeTable, DeValue};
 
-/// The line, from 1, of a field such as `reference[0].period_s`, or of the innermost of its parts
-/// that the text has: a field that is left out has its default.
-pub(super) fn line_of(text: &str, field: &str) -> Option<u64> {
+/// The line, from 1, of a field such as `reference[0].period_s` in a text in TOML, or of the
+/// innermost of its parts that the text has: a field that is left out has its default.
+#[must_use]
+pub fn line_of(text: &str, field: &str) -> Option<u64> {
     let table = DeTable::parse(text).ok()?;
     let mut start = None;
     let mut here = DeValue::Table(table.into_inner());
@@ -31,7 +32,8 @@ pub(super) fn line_of(text: &str, field: &str) -> Option<u64> {
 }
 
 /// The line, from 1, of a place in a text.
-pub(super) fn line_at(text: &str, place: usize) -> u64 {
+#[must_use]
+pub fn line_at(text: &str, place: usize) -> u64 {
     let before = text.as_bytes().iter().take(place);
     1 + before.filter(|byte| **byte == b'\n').count() as u64
 }

@@ -51,6 +51,17 @@ pub fn course(events: &[Event], interval_s: f64) -> Vec<(usize, Disturbance)> {
 }
 
 impl PlantOptions {
+    /// The plant of a kind, with its defaults.
+    #[must_use]
+    pub fn named(kind: &str) -> Option<Self> {
+        match kind {
+            "spring" => Some(Self::Spring(SpringPlantOptions::default())),
+            "preisach" => Some(Self::Preisach(PreisachPlantOptions::default())),
+            "wire" => Some(Self::Wire(WirePlantOptions::default())),
+            _ => None,
+        }
+    }
+
     /// The plant with the noise of `seed`.
     ///
     /// # Errors

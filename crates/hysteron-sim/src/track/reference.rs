@@ -72,8 +72,9 @@ impl Reference {
         Ok(Self::Ramps { points })
     }
 
-    /// The value at `time`, s.
-    pub(super) fn at(&self, time: f64) -> f64 {
+    /// The value at `time`, s. 0 for a table that was not read.
+    #[must_use]
+    pub fn at(&self, time: f64) -> f64 {
         match self {
             Self::Constant { value } => *value,
             Self::Sine {

@@ -27,6 +27,7 @@ fn plain() -> Scheme {
         inner: None,
         filter_s: 0.0,
         stuck_s: None,
+        ..Scheme::new(0.1, (0.0, 10.0))
     }
 }
 

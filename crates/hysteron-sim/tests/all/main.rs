@@ -8,6 +8,7 @@ mod comparison;
 mod control;
 mod faults;
 mod rig;
+mod safety;
 mod sensor_lag;
 mod threads;
 mod track;

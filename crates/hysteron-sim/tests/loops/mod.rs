@@ -145,6 +145,7 @@ impl Known {
             inner: self.inner,
             filter_s: self.scenario.shared.filter_s,
             stuck_s: Some(15.0 * self.scenario.interval_s),
+            ..Scheme::new(self.scenario.interval_s, drives)
         }
     }
 

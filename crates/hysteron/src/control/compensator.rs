@@ -10,8 +10,9 @@
 //! memory of the inverse until it is wiped out. So with a learning model, the inverse restarts from
 //! the measured input wherever the target turns. There it has to cross the dead band anyway.
 
+use super::trust::Trust;
 use crate::adapt::{Adaptive, AdaptiveLoad};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Model, Policy, Sample, Sign, State, Wanted};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
@@ -35,6 +36,10 @@ pub struct Compensator {
     input: Option<f64>,
     /// Number of samples until learning continues.
     resting: u32,
+    /// Whether the weights of the inverse have changed at once since that was last asked.
+    changed: bool,
+    /// The output expected at the last input.
+    prediction: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -42,6 +47,50 @@ enum Kind {
     Fixed { model: Box<Model>, state: State },
     Adaptive(Box<Adaptive>),
     Load(Box<AdaptiveLoad>),
+    Shadow(Box<Shadow>),
+}
+
+impl Kind {
+    /// The state at the last input, and the sign of the output.
+    fn at(&self) -> (State, Sign) {
+        match self {
+            Self::Fixed { model, state } => (state.clone(), model.sign()),
+            Self::Adaptive(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
+            Self::Load(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
+            Self::Shadow(shadow) => shadow.used().kind.at(),
+        }
+    }
+
+    fn solve_from(
+        &self,
+        from: &mut State,
+        wanted: Wanted,
+        after: &[Wanted],
+    ) -> Result<Solution<f64>> {
+        match self {
+            Self::Fixed { model, .. } => model.inverse()?.step_ahead(from, wanted, after),
+            Self::Adaptive(adaptive) => adaptive.solve_from(from, wanted),
+            Self::Load(adaptive) => adaptive.solve_from(from, wanted),
+            Self::Shadow(shadow) => shadow.used().kind.solve_from(from, wanted, after),
+        }
+    }
+}
+
+/// A learner beside the model that it began from.
+#[derive(Debug, Clone)]
+struct Shadow {
+    fixed: Compensator,
+    learner: Compensator,
+    trust: Trust,
+}
+
+impl Shadow {
+    fn used(&self) -> &Compensator {
+        match self.trust.learner() {
+            true => &self.learner,
+            false => &self.fixed,
+        }
+    }
 }
 
 impl Compensator {
@@ -69,6 +118,118 @@ impl Compensator {
         Self::new(Kind::Load(Box::new(adaptive)))
     }
 
+    /// A `learner` in the shadow of the fixed `model` that it began from: its predictions and its
+    /// inverse are used only while its predictions have been the better ones.
+    ///
+    /// ```
+    /// use hysteron::control::Compensator;
+    /// use hysteron::{AdaptOptions, Learner, Model, Operator, Plane, Sign};
+    /// let plane = Plane::new(20.0, 80.0, 5)?;
+    /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 15], 0.0, Sign::Positive)?;
+    /// let options = AdaptOptions { learner: Learner::Increments, ..AdaptOptions::default() };
+    /// let learner = Compensator::adaptive(options.adaptive(&model)?);
+    /// let compensator = Compensator::shadowed(&model, learner)?;
+    /// assert!(!compensator.trusts_learner()); // it has shown nothing yet
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Compensator::fixed`].
+    pub fn shadowed(model: &Model, learner: Self) -> Result<Self> {
+        Ok(Self::new(Kind::Shadow(Box::new(Shadow {
+            fixed: Self::fixed(model)?,
+            learner,
+            trust: Trust::default(),
+        }))))
+    }
+
+    /// Whether a learner in the shadow of a fixed model is used at present.
+    #[must_use]
+    pub fn trusts_learner(&self) -> bool {
+        matches!(&self.kind, Kind::Shadow(shadow) if shadow.trust.learner())
+    }
+
+    /// Replaces the model of a compensator that does not learn itself, or of the learner in a
+    /// shadow, by one that was learned elsewhere. What the operators remember stays.
+    ///
+    /// # Errors
+    /// [`Error::Control`] for a model on another plane, and for a compensator that learns itself;
+    /// as [`Model::inverse`]. Nothing is changed then.
+    pub fn renew(&mut self, renewed: &Model) -> Result<()> {
+        match &mut self.kind {
+            Kind::Shadow(shadow) => {
+                shadow.learner.renew(renewed)?;
+                self.changed |= shadow.trust.learner();
+                Ok(())
+            }
+            Kind::Fixed { model, state } => {
+                let same =
+                    (model.operator(), model.plane()) == (renewed.operator(), renewed.plane());
+                if !same || model.load.is_some() || renewed.load.is_some() {
+                    let what = "a renewed model needs the operators and the plane of the old one";
+                    return Err(Error::Control(what.into()));
+                }
+                renewed.inverse()?;
+                let core = &renewed.operators().core;
+                core.rebase(&mut state.operators)?;
+                if let Some(wanted) = &mut self.wanted {
+                    core.rebase(&mut wanted.operators)?;
+                }
+                **model = renewed.clone();
+                self.changed = true;
+                Ok(())
+            }
+            Kind::Adaptive(_) | Kind::Load(_) => Err(Error::Control(
+                "a model that learns in the loop takes no weights from elsewhere".into(),
+            )),
+        }
+    }
+
+    /// Whether the inverse has changed at once, by new weights or another model, since this was
+    /// last asked.
+    pub(super) fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.changed)
+    }
+
+    /// By how much the output changes with `input`, from the last one that the model followed.
+    /// Nothing is moved.
+    pub(super) fn expected_change(&self, input: f64, dt: f64) -> f64 {
+        let sample = Sample {
+            input,
+            dt: Some(dt),
+            load: None,
+        };
+        let change = |before: f64, after: Result<f64>| after.map_or(0.0, |after| after - before);
+        match &self.kind {
+            Kind::Fixed { model, state } => {
+                let after = model.step(&mut state.clone(), sample);
+                change(self.prediction, after.map(|step| step.output))
+            }
+            Kind::Adaptive(adaptive) => change(self.prediction, adaptive.clone().simulate(sample)),
+            Kind::Load(adaptive) => change(self.prediction, adaptive.clone().simulate(sample)),
+            Kind::Shadow(shadow) => shadow.used().expected_change(input, dt),
+        }
+    }
+
+    /// The output that a model which learns nothing expected at the last input, where there is one:
+    /// a learner may have learned from a reading that stands still.
+    pub(super) fn prediction(&self) -> f64 {
+        match &self.kind {
+            Kind::Shadow(shadow) => shadow.fixed.prediction,
+            _ => self.prediction,
+        }
+    }
+
+    /// The range of the outputs of the model at its beginning.
+    pub(super) fn output_range(&self) -> (f64, f64) {
+        match &self.kind {
+            Kind::Fixed { model, .. } => model.output_range(),
+            Kind::Adaptive(adaptive) => adaptive.offline().output_range(),
+            Kind::Load(adaptive) => adaptive.offline().output_range(),
+            Kind::Shadow(shadow) => shadow.fixed.output_range(),
+        }
+    }
+
     fn new(kind: Kind) -> Self {
         Self {
             kind,
@@ -76,6 +237,8 @@ impl Compensator {
             target: None,
             input: None,
             resting: 0,
+            changed: false,
+            prediction: f64::NAN,
         }
     }
 
@@ -91,6 +254,17 @@ impl Compensator {
         dt: Option<f64>,
         measured: Option<f64>,
     ) -> Result<(f64, Option<Outcome>)> {
+        let followed = self.moved(input, dt, measured)?;
+        self.prediction = followed.0;
+        Ok(followed)
+    }
+
+    fn moved(
+        &mut self,
+        input: f64,
+        dt: Option<f64>,
+        measured: Option<f64>,
+    ) -> Result<(f64, Option<Outcome>)> {
         let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
             (Kind::Fixed { model, state }, _) => {
@@ -100,6 +274,25 @@ impl Compensator {
                     load: None,
                 };
                 Ok((model.step(state, sample)?.output, None))
+            }
+            (Kind::Shadow(shadow), measured) => {
+                let Shadow {
+                    fixed,
+                    learner,
+                    trust,
+                } = shadow.as_mut();
+                let (first, _) = fixed.follow(input, dt, measured)?;
+                let (second, outcome) = learner.follow(input, dt, measured)?;
+                let used = match trust.learner() {
+                    true => second,
+                    false => first,
+                };
+                let errors = measured.map(|measured| (measured - first, measured - second));
+                if errors.is_some_and(|errors| trust.push(errors)) {
+                    self.changed = true;
+                    self.set_out_again();
+                }
+                Ok((used, outcome))
             }
             (Kind::Load(adaptive), measured) => {
                 let sample = Sample {
@@ -150,17 +343,20 @@ impl Compensator {
         dt: Option<f64>,
         next: &[f64],
     ) -> Result<Solution<f64>> {
+        if let Kind::Shadow(shadow) = &mut self.kind {
+            let used = match shadow.trust.learner() {
+                true => &mut shadow.learner,
+                false => &mut shadow.fixed,
+            };
+            return used.solve(target, heading, tolerance, dt, next);
+        }
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
         let turns = branch.push(target).is_some();
         let branch = branch.branch();
         if turns && !matches!(self.kind, Kind::Fixed { .. }) {
             self.set_out_again();
         }
-        let (state, sign) = match &self.kind {
-            Kind::Fixed { model, state } => (state.clone(), model.sign()),
-            Kind::Adaptive(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
-            Kind::Load(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
-        };
+        let (state, sign) = self.kind.at();
         let wanted = self.wanted.get_or_insert(state);
         let rises = wanted.is_rising() == (sign == Sign::Positive);
         let turned = match branch {
@@ -196,17 +392,17 @@ impl Compensator {
             dt,
             ..target.into()
         };
-        match &self.kind {
-            Kind::Fixed { model, .. } => model.inverse()?.step_ahead(wanted, wanted_now, &after),
-            Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, wanted_now),
-            Kind::Load(adaptive) => adaptive.solve_from(wanted, wanted_now),
-        }
+        self.kind.solve_from(wanted, wanted_now, &after)
     }
 
     /// Restarts the inverse from the last measured input. While the input is not measured, it may
     /// go anywhere, and the inputs asked for in that time may not have been reached.
     pub(super) fn set_out_again(&mut self) {
         self.wanted = None;
+        if let Kind::Shadow(shadow) = &mut self.kind {
+            shadow.fixed.set_out_again();
+            shadow.learner.set_out_again();
+        }
     }
 
     /// The model whose weights adapt, if this compensator has one.
@@ -215,6 +411,21 @@ impl Compensator {
         match &self.kind {
             Kind::Fixed { .. } | Kind::Load(_) => None,
             Kind::Adaptive(adaptive) => Some(adaptive),
+            Kind::Shadow(shadow) => shadow.learner.adapting(),
+        }
+    }
+
+    /// The model as it has been learned; `None` where nothing learns weights.
+    #[must_use]
+    pub fn learned(&self) -> Option<Model> {
+        match &self.kind {
+            Kind::Adaptive(adaptive) => adaptive.model().ok(),
+            Kind::Shadow(shadow) => match &shadow.learner.kind {
+                // Its weights came from elsewhere.
+                Kind::Fixed { model, .. } => Some(model.as_ref().clone()),
+                _ => shadow.learner.learned(),
+            },
+            Kind::Fixed { .. } | Kind::Load(_) => None,
         }
     }
 
@@ -224,6 +435,7 @@ impl Compensator {
         match &self.kind {
             Kind::Load(adaptive) => Some(adaptive),
             Kind::Fixed { .. } | Kind::Adaptive(_) => None,
+            Kind::Shadow(shadow) => shadow.learner.following(),
         }
     }
 }

@@ -1,12 +1,17 @@
 //! One controller for all schemes: inverse feedforward, PID feedback, or both, with an optional
 //! inner loop around the input.
 
+use super::gate::Gate;
 use super::pid::clamp;
 use super::sensor::{Sensed, Sensor};
-use super::{LoopStatus, Pid, Reading, Scheme};
-use crate::error::Result;
+use super::standstill::{Cause, Standstill};
+use super::{Gains, LoopStatus, Pid, Reading, Scheme};
+use crate::error::{Error, Result};
 use crate::model::Policy;
 use hysteron_core::{Direction, Outcome};
+
+/// Samples within which a difference of the feedforward fades.
+const FADE: u32 = 10;
 
 /// The wanted output, and the direction it takes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +44,9 @@ pub struct Action {
 /// If the output's sensor gives nothing new, the feedback is held, the feedforward continues and
 /// nothing is learned. If the input's sensor gives nothing new, the inner loop holds the drive for
 /// [`Scheme::stuck_s`] and then sets the lowest drive.
+///
+/// A reading that stands still to the last bit where the output has to move is taken as missing too
+/// ([`Controller::stuck_s`]), and so is a spike, with [`Scheme::gate`].
 ///
 /// ```
 /// use hysteron::control::{Controller, Device, Gains, Reading, Scheme, Reference};
@@ -73,6 +81,19 @@ pub struct Action {
 #[derive(Debug, Clone)]
 pub struct Controller {
     scheme: Scheme,
+    /// Time since the sample before, s.
+    dt: f64,
+    gate: Option<Gate>,
+    standstill: Standstill,
+    /// The drive to go on from at the next sample.
+    from: Option<f64>,
+    /// What is added to the feedforward for a few samples, so that it does not jump, and for how
+    /// many more.
+    fade: (f64, u32),
+    /// The last feedforward.
+    feedforward: Option<f64>,
+    /// The last drive.
+    drive: Option<f64>,
     pid: Option<Pid>,
     inner: Option<Pid>,
     output: Sensor,
@@ -94,8 +115,15 @@ impl Controller {
     /// [`crate::Error::Control`] for settings that no loop can run with.
     pub fn new(scheme: Scheme) -> Result<Self> {
         scheme.check()?;
-        let sensor = || Sensor::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
+        let sensor = || Sensor::new(scheme.filter_s, scheme.stuck_s);
         Ok(Self {
+            dt: scheme.interval_s,
+            gate: scheme.gate.map(Gate::new),
+            standstill: Standstill::default(),
+            from: None,
+            fade: (0.0, 0),
+            feedforward: None,
+            drive: None,
             pid: scheme.pid.map(Pid::new),
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
             output: sensor(),
@@ -150,22 +178,38 @@ impl Controller {
         next: &[f64],
         reading: Reading,
     ) -> Result<Action> {
+        self.step_after(self.scheme.interval_s, target, next, reading)
+    }
+
+    /// As [`Controller::step_ahead`], `dt` s after the sample before: for a device whose intervals
+    /// are measured.
+    ///
+    /// # Errors
+    /// As [`Controller::step_ahead`]; [`Error::Control`] for a `dt` that is not finite or not above
+    /// zero.
+    pub fn step_after(
+        &mut self,
+        dt: f64,
+        target: Reference,
+        next: &[f64],
+        reading: Reading,
+    ) -> Result<Action> {
+        self.pass(dt)?;
         refuse_not_finite(target.output)?;
         next.iter()
             .try_for_each(|&output| refuse_not_finite(output))?;
-        let (output, input) = self.read(reading);
-        let mut status = LoopStatus::default();
+        let (output, input, mut status) = self.read(reading);
         if let Some(compensator) = &mut self.scheme.compensator {
             if let Some(input) = input.and_then(Sensed::value) {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
                 let (prediction, outcome) =
-                    compensator.follow(input, Some(self.scheme.interval_s), output.value())?;
+                    compensator.follow(input, Some(self.dt), output.value())?;
                 self.prediction = prediction;
                 status.adapted = outcome == Some(Outcome::Learned);
-                status.rejected = outcome == Some(Outcome::Rejected);
-                status.stuck = outcome.is_some_and(Outcome::is_stuck);
+                status.rejected |= outcome == Some(Outcome::Rejected);
+                status.stuck |= outcome.is_some_and(Outcome::is_stuck);
             }
             self.lost |= input == Some(Sensed::Broken);
         }
@@ -179,9 +223,106 @@ impl Controller {
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
     pub fn step_command(&mut self, command: f64, reading: Reading) -> Result<Action> {
+        self.step_command_after(self.scheme.interval_s, command, reading)
+    }
+
+    /// As [`Controller::step_command`], `dt` s after the sample before.
+    ///
+    /// # Errors
+    /// As [`Controller::step_command`]; [`Error::Control`] for a `dt` that is not finite or not
+    /// above zero.
+    pub fn step_command_after(
+        &mut self,
+        dt: f64,
+        command: f64,
+        reading: Reading,
+    ) -> Result<Action> {
         refuse_not_finite(command)?;
-        let sights = self.read(reading);
-        Ok(self.act(command, f64::NAN, sights, LoopStatus::default()))
+        self.pass(dt)?;
+        let (output, input, status) = self.read(reading);
+        Ok(self.act(command, f64::NAN, (output, input), status))
+    }
+
+    /// Tells that `drive` has acted up to the next reading, where that is not the drive of the last
+    /// sample: before the first sample, or where a drive was lost on its way. Without an inner loop
+    /// the model follows it.
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] for a drive that is not finite.
+    pub fn applied(&mut self, drive: f64) -> Result<()> {
+        refuse_not_finite(drive)?;
+        if self.scheme.inner.is_none() {
+            self.last = Some(drive);
+        }
+        self.drive.get_or_insert(drive);
+        Ok(())
+    }
+
+    /// Goes on from `drive` at the next sample, without a bump: from manual to automatic. The
+    /// integral begins so that the first drive is this one. What it cannot take, such as the
+    /// feedforward of an inverse alone, fades within ten samples.
+    ///
+    /// ```
+    /// use hysteron::control::{Controller, Gains, Reading, Reference, Scheme};
+    /// let mut controller = Controller::new(Scheme {
+    ///     pid: Some(Gains { gain: 2.0, integral_s: 1.0, derivative_s: 0.0 }),
+    ///     ..Scheme::new(0.01, (0.0, 10.0))
+    /// })?;
+    /// controller.go_on_from(3.0)?;
+    /// let (target, reading) = (Reference { output: 9.0, heading: None }, Reading { output: 1.0, input: None });
+    /// let action = controller.step(target, reading)?;
+    /// assert!((action.drive - 3.0).abs() < 0.2); // and not 16
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] for a drive that is not finite.
+    pub fn go_on_from(&mut self, drive: f64) -> Result<()> {
+        self.applied(drive)?;
+        (self.from, self.drive) = (Some(drive), Some(drive));
+        Ok(())
+    }
+
+    /// Lets the model follow a sample that another controller has answered: `drive` acted up to
+    /// `output`, which may be NaN. A run that goes on begins so.
+    ///
+    /// # Errors
+    /// As [`Controller::step_after`] and [`Controller::applied`].
+    pub fn replay(&mut self, dt: f64, drive: f64, output: f64) -> Result<()> {
+        self.pass(dt)?;
+        self.applied(drive)?;
+        self.drive = Some(drive);
+        let reading = Reading {
+            output,
+            input: None,
+        };
+        let (output, input, _) = self.read(reading);
+        let input = input.and_then(Sensed::value);
+        if let (Some(compensator), Some(input)) = (&mut self.scheme.compensator, input) {
+            self.prediction = compensator.follow(input, Some(dt), output.value())?.0;
+        }
+        Ok(())
+    }
+
+    /// Gives the compensator weights that were learned beside the loop
+    /// ([`super::Compensator::renew`]). The drive does not jump.
+    ///
+    /// # Errors
+    /// As [`super::Compensator::renew`], and [`Error::Control`] without one.
+    pub fn renew(&mut self, model: &crate::Model) -> Result<()> {
+        match &mut self.scheme.compensator {
+            Some(compensator) => compensator.renew(model),
+            None => Err(Error::Control("there is no model in this loop".into())),
+        }
+    }
+
+    /// How long the output has stood still to the last bit where it has to move, s; `None` where
+    /// its sensor works. It has to move where the model expects 5 % of its range; without a model,
+    /// where the drive has gone almost half its way to a limit since, and no further, once the
+    /// sensor has shown that it works.
+    #[must_use]
+    pub fn stuck_s(&self) -> Option<f64> {
+        self.standstill.stuck_s()
     }
 
     /// Time between samples, s.
@@ -190,22 +331,83 @@ impl Controller {
         self.scheme.interval_s
     }
 
+    /// The drive for a loop that is given up: zero, or the one within the limits that is nearest.
+    #[must_use]
+    pub fn rest_drive(&self) -> f64 {
+        clamp(0.0, self.scheme.drives.0, self.scheme.drives.1)
+    }
+
     /// The model in the loop, if there is one.
     #[must_use]
     pub fn compensator(&self) -> Option<&super::Compensator> {
         self.scheme.compensator.as_ref()
     }
 
-    /// Filters the readings of output and input. If no sensor measures the input, the last command
-    /// is used in its place, except where an inner loop needs a measurement.
-    fn read(&mut self, reading: Reading) -> (Sensed, Option<Sensed>) {
-        let output = self.output.read(reading.output);
+    fn pass(&mut self, dt: f64) -> Result<()> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(Error::Control(format!(
+                "{dt} s between two samples: a time above zero is needed"
+            )));
+        }
+        self.dt = dt;
+        Ok(())
+    }
+
+    /// Filters the readings of output and input, and holds back those that cannot be. If no sensor
+    /// measures the input, the last command is used in its place, except where an inner loop needs
+    /// a measurement.
+    fn read(&mut self, reading: Reading) -> (Sensed, Option<Sensed>, LoopStatus) {
+        let dt = self.dt;
         let input = match (reading.input, self.scheme.inner) {
-            (Some(input), _) => Some(self.input.read(input)),
-            (None, Some(_)) => Some(self.input.read(f64::NAN)),
-            (None, None) => self.last.map(|last| Sensed::New(self.input.filter(last))),
+            (Some(input), _) => Some(self.input.read(input, dt)),
+            (None, Some(_)) => Some(self.input.read(f64::NAN, dt)),
+            (None, None) => self
+                .last
+                .map(|last| Sensed::New(self.input.filter(last, dt))),
         };
-        (output, input)
+        let mut status = LoopStatus::default();
+        let mut output = reading.output;
+        if output.is_finite() {
+            status.stuck = self.stands_still(output, input);
+            status.rejected = !self.passes(output, input);
+            if status.stuck || status.rejected {
+                output = f64::NAN;
+            }
+        }
+        (self.output.read(output, dt), input, status)
+    }
+
+    /// Whether the output stands still where it has to move.
+    fn stands_still(&mut self, output: f64, input: Option<Sensed>) -> bool {
+        let compensator = self.scheme.compensator.as_ref();
+        let expected = compensator.and_then(|compensator| {
+            let range = compensator.output_range();
+            let expected = compensator.prediction();
+            (expected.is_finite() && input.is_some()).then_some((expected, range))
+        });
+        // The drive of an inner loop goes up and down by itself.
+        let (drive, drives) = match self.scheme.inner {
+            Some(_) => (self.last, self.scheme.commands),
+            None => (self.drive, self.scheme.drives),
+        };
+        let cause = Cause {
+            expected,
+            drive: drive.unwrap_or(drives.0),
+            drives,
+        };
+        self.standstill.push(output, cause, self.dt).is_some()
+    }
+
+    /// Whether a reading is no spike.
+    fn passes(&mut self, output: f64, input: Option<Sensed>) -> bool {
+        let (compensator, dt) = (self.scheme.compensator.as_ref(), self.dt);
+        let input = input.and_then(Sensed::value);
+        let expected = || match (compensator, input) {
+            (Some(compensator), Some(input)) => compensator.expected_change(input, dt),
+            _ => 0.0,
+        };
+        let gate = self.gate.as_mut();
+        gate.is_none_or(|gate| gate.passes(output, expected))
     }
 
     fn act(
@@ -215,9 +417,14 @@ impl Controller {
         (output, input): (Sensed, Option<Sensed>),
         status: LoopStatus,
     ) -> Action {
-        let drive = self.drive(command, input);
+        let asked = self.driven(command, input);
+        let drive = self.slewed(asked);
         let (low, high) = self.scheme.drives;
-        self.held = (drive <= low, drive >= high);
+        self.held = (
+            drive <= low || drive > asked,
+            drive >= high || drive < asked,
+        );
+        self.drive = Some(drive);
         let (lowest, highest) = self.scheme.commands;
         let limits = [
             self.held.0,
@@ -258,35 +465,88 @@ impl Controller {
             Policy::Anticipate => target.heading,
             Policy::Hold => None,
         };
-        let feedforward = match &mut scheme.compensator {
-            Some(compensator) => {
-                let solution = compensator.solve(
-                    target.output,
-                    heading,
-                    scheme.tolerance,
-                    Some(scheme.interval_s),
-                    next,
-                )?;
-                status.out_of_reach = solution.status.is_out_of_reach();
-                solution.input
+        let (mut feedforward, mut changed) = (scheme.bias, false);
+        if let Some(compensator) = &mut scheme.compensator {
+            // The target that is due when this drive is seen to act, and those after it.
+            let ahead = scheme.delay.min(next.len());
+            let due = match ahead.checked_sub(1) {
+                Some(n) => next[n],
+                None => target.output,
+            };
+            let (tolerance, dt) = (scheme.tolerance, Some(self.dt));
+            let solution = compensator.solve(due, heading, tolerance, dt, &next[ahead..])?;
+            status.out_of_reach = solution.status.is_out_of_reach();
+            feedforward = solution.input;
+            changed = compensator.take_changed();
+        }
+        self.smooth(changed, feedforward);
+        let error = measured.map(|measured| target.output - measured);
+        if let Some(from) = self.begins_at() {
+            if self.pid.is_some() && measured.is_none() {
+                // The loop is not closed before its first reading.
+                let (low, high) = self.scheme.commands;
+                return Ok(clamp(from, low, high));
             }
-            None => scheme.bias,
+            self.from = None;
+            let e = error.unwrap_or(0.0);
+            let integrates = |gains: &Gains| gains.integral_s > 0.0;
+            let offset = match self.scheme.pid {
+                // The integral takes all of a constant bias.
+                Some(gains) if integrates(&gains) && self.scheme.compensator.is_none() => 0.0,
+                Some(gains) if !integrates(&gains) => from - feedforward - gains.gain * e,
+                _ => from - feedforward,
+            };
+            self.fade = (offset, FADE);
+            if let Some(pid) = &mut self.pid {
+                pid.begin(from, e, feedforward + offset);
+            }
+        }
+        let (offset, left) = &mut self.fade;
+        let bias = feedforward + *offset * f64::from(*left) / f64::from(FADE);
+        *left = left.saturating_sub(1);
+        let (low, high) = self.scheme.commands;
+        let commands = match self.standstill.room() {
+            Some(room) => (low.max(room.0), high.min(room.1)),
+            None => (low, high),
         };
-        let (low, high) = scheme.commands;
-        Ok(match (&mut self.pid, measured) {
-            (None, _) => clamp(feedforward, low, high),
-            (Some(pid), None) => pid.hold(feedforward, scheme.commands),
-            (Some(pid), Some(measured)) => pid.step(
-                target.output - measured,
-                scheme.interval_s,
-                feedforward,
-                scheme.commands,
-                self.held,
-            ),
+        Ok(match (&mut self.pid, measured, error) {
+            (Some(pid), Some(measured), Some(error)) => {
+                pid.follow(error, measured, self.dt, bias, commands, self.held)
+            }
+            (Some(pid), ..) => pid.hold(bias, commands),
+            (None, ..) => clamp(bias, commands.0, commands.1),
         })
     }
 
-    fn drive(&mut self, command: f64, input: Option<Sensed>) -> f64 {
+    /// The command to begin from, where the loop goes on from another drive. The command of an
+    /// inner loop is no drive: it begins where it was last.
+    fn begins_at(&self) -> Option<f64> {
+        let drive = self.from?;
+        match self.scheme.inner {
+            None => Some(drive),
+            Some(_) => self.last,
+        }
+    }
+
+    /// Lets the feedforward change slowly where other weights have changed it at once.
+    fn smooth(&mut self, changed: bool, feedforward: f64) {
+        if let (true, Some(last)) = (changed, self.feedforward) {
+            let (offset, left) = self.fade;
+            let old = offset * f64::from(left) / f64::from(FADE);
+            self.fade = (last + old - feedforward, FADE);
+        }
+        self.feedforward = Some(feedforward);
+    }
+
+    /// As far towards a drive as the slew allows.
+    fn slewed(&self, drive: f64) -> f64 {
+        match (self.scheme.slew, self.drive) {
+            (Some(slew), Some(last)) => clamp(drive, last - slew * self.dt, last + slew * self.dt),
+            _ => drive,
+        }
+    }
+
+    fn driven(&mut self, command: f64, input: Option<Sensed>) -> f64 {
         let (low, high) = self.scheme.drives;
         let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
             return clamp(command, low, high);
@@ -297,13 +557,9 @@ impl Controller {
         };
         let limits = (square(low), square(high));
         let power = match input {
-            Some(Sensed::New(input)) => pid.step(
-                command - input,
-                self.scheme.interval_s,
-                0.0,
-                limits,
-                (false, false),
-            ),
+            Some(Sensed::New(input)) => {
+                pid.step(command - input, self.dt, 0.0, limits, (false, false))
+            }
             Some(Sensed::Repeated | Sensed::Missing) => pid.hold(0.0, limits),
             // Without a temperature reading, heating is not safe.
             Some(Sensed::Broken) | None => {

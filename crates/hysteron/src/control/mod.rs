@@ -5,7 +5,8 @@
 //! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
 //! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
-//! feedback and `tuning` its gains; `sensor` checks each sensor; `status` has the flags; `device`,
+//! feedback and `tuning` its gains; `sensor` checks each sensor, `gate` holds back spikes,
+//! `standstill` notices a stuck one; `trust` chooses between a learner and the model it began from; `status` has the flags; `device`,
 //! `run` and `trace` connect the loop to a device and record it.
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
@@ -50,12 +51,15 @@
 mod compensator;
 mod controller;
 mod device;
+mod gate;
 mod pid;
 mod run;
 mod scheme;
 mod sensor;
+mod standstill;
 mod status;
 mod trace;
+mod trust;
 mod tuning;
 
 pub use compensator::Compensator;

@@ -61,10 +61,12 @@ const DERIVATIVE_FILTER: f64 = 8.0;
 pub struct Pid {
     gains: Gains,
     integral: f64,
-    /// Error of the last sample and its filtered derivative.
+    /// What the derivative acts on at the last sample, and its filtered derivative.
     last: Option<(f64, f64)>,
     /// Sum of all terms at the last sample, within the limits.
     correction: f64,
+    /// Whether the integral is still beyond the limits because it began there.
+    begun: bool,
 }
 
 impl Pid {
@@ -76,6 +78,7 @@ impl Pid {
             integral: 0.0,
             last: None,
             correction: 0.0,
+            begun: false,
         }
     }
 
@@ -85,6 +88,30 @@ impl Pid {
     pub fn step(
         &mut self,
         error: f64,
+        dt: f64,
+        bias: f64,
+        limits: (f64, f64),
+        held: (bool, bool),
+    ) -> f64 {
+        self.follow(error, -error, dt, bias, limits, held)
+    }
+
+    /// As [`Pid::step`], with the derivative of the `measured` output alone: a step of the
+    /// reference gives no kick (Åström & Hägglund 2006, section 3.3).
+    ///
+    /// ```
+    /// use hysteron::control::{Gains, Pid};
+    /// let mut pid = Pid::new(Gains { gain: 1.0, integral_s: 0.0, derivative_s: 1.0 });
+    /// let mut drive = |reference: f64, measured: f64| {
+    ///     pid.follow(reference - measured, measured, 0.1, 0.0, (-99.0, 99.0), (false, false))
+    /// };
+    /// drive(0.0, 0.0);
+    /// assert_eq!(drive(2.0, 0.0), 2.0); // the proportional term, and no more
+    /// ```
+    pub fn follow(
+        &mut self,
+        error: f64,
+        measured: f64,
         dt: f64,
         bias: f64,
         (low, high): (f64, f64),
@@ -98,27 +125,52 @@ impl Pid {
         let slope = match self.last {
             Some((last, slope)) if derivative_s > 0.0 => {
                 let share = dt / (dt + derivative_s / DERIVATIVE_FILTER);
-                slope + share * ((error - last) / dt - slope)
+                slope + share * ((last - measured) / dt - slope)
             }
             _ => 0.0,
         };
         // For huge errors the difference can overflow. Then the derivative starts again.
-        self.last = (error - slope).is_finite().then_some((error, slope));
+        self.last = (measured + slope).is_finite().then_some((measured, slope));
         let fixed = bias + gain * (error + derivative_s * slope);
         if integral_s > 0.0 {
             let growth = gain * error * dt / integral_s;
             let out = fixed + self.integral + growth;
             let pushes_up = growth > 0.0 && (out > high || held.1);
             let pushes_down = growth < 0.0 && (out < low || held.0);
+            // The integral never needs to exceed the limits on its own, unless it began there.
+            let (mut lowest, mut highest) = ((low - bias).min(0.0), (high - bias).max(0.0));
+            self.begun &= self.integral < lowest || self.integral > highest;
+            if self.begun {
+                (lowest, highest) = (lowest.min(self.integral), highest.max(self.integral));
+            }
             if out.is_finite() && !pushes_up && !pushes_down {
                 self.integral += growth;
             }
-            // The integral never needs to exceed the limits on its own.
-            self.integral = clamp(self.integral, (low - bias).min(0.0), (high - bias).max(0.0));
+            self.integral = clamp(self.integral, lowest, highest);
         }
         let out = clamp(fixed + self.integral, low, high);
         self.correction = out - bias;
         out
+    }
+
+    /// Begins from `out`: the next step with this `error` and `bias` gives it, so that a loop that
+    /// is closed takes over without a bump. Without an integral term nothing can be done.
+    ///
+    /// ```
+    /// use hysteron::control::{Gains, Pid};
+    /// let mut pid = Pid::new(Gains { gain: 2.0, integral_s: 1.0, derivative_s: 0.0 });
+    /// pid.begin(0.3, 5.0, 0.0);
+    /// let drive = pid.step(5.0, 1e-6, 0.0, (0.0, 1.0), (false, false));
+    /// assert!((drive - 0.3).abs() < 1e-4);
+    /// ```
+    pub fn begin(&mut self, out: f64, error: f64, bias: f64) {
+        let integral = out - bias - self.gains.gain * error;
+        if self.gains.integral_s > 0.0 && integral.is_finite() {
+            self.integral = integral;
+            self.correction = out - bias;
+            self.begun = true;
+        }
+        self.last = None;
     }
 
     /// The output for a sample without a reading: the last sum of the terms is kept, so the output

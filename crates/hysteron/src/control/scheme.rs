@@ -45,6 +45,17 @@ pub struct Scheme {
     /// `None` for sensors without noise, where an unchanged reading is normal: equal readings are
     /// valid then, and a missing reading counts as broken at once.
     pub stuck_s: Option<f64>,
+    /// A gate against spikes: readings of the output that are far from where the last ones lead, and
+    /// that the model does not expect, are taken as missing until two more agree with them. So a
+    /// spike does not move the drive, and a plant that jumps is believed two samples late. *Far* is
+    /// ten standard deviations of the noise, and this size at least, in the output's unit. `None`
+    /// for no gate.
+    pub gate: Option<f64>,
+    /// The fastest change of the drive, in its unit per second; `None` for no such limit.
+    pub slew: Option<f64>,
+    /// Samples until a drive moves the output that is read. So many samples ahead is the target
+    /// that the inverse solves for, as far as it is told ([`super::Controller::step_ahead`]).
+    pub delay: usize,
 }
 
 impl Scheme {
@@ -65,6 +76,9 @@ impl Scheme {
             inner: None,
             filter_s: 0.0,
             stuck_s: None,
+            gate: None,
+            slew: None,
+            delay: 0,
         }
     }
 
@@ -89,6 +103,11 @@ impl Scheme {
         require(
             self.stuck_s.is_none_or(positive),
             "`stuck_s` must be above zero",
+        )?;
+        require(self.slew.is_none_or(positive), "`slew` must be above zero")?;
+        require(
+            self.gate.is_none_or(from_zero),
+            "`gate` must be zero or above",
         )?;
         require(self.bias.is_finite(), "`bias` must be a finite number")?;
         require(

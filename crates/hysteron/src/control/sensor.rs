@@ -32,39 +32,40 @@ impl Sensed {
 /// loop would integrate an error that does not exist, and a model would learn from it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sensor {
-    interval_s: f64,
     filter_s: f64,
-    /// Largest number of samples without a new reading that a working sensor can give; `None` where
-    /// equal readings are valid.
-    patience: Option<u32>,
+    /// Longest time without a new reading that a working sensor can give, s; `None` where equal
+    /// readings are valid.
+    patience: Option<f64>,
     filtered: f64,
     last: f64,
-    /// Number of samples since the last new reading.
-    gap: u32,
+    /// Time since the last new reading, s.
+    gap: f64,
 }
+
+/// Sums of intervals that differ by less than this share are one time.
+const ROUNDING: f64 = 1e-9;
 
 impl Sensor {
     /// A filter with the time constant `filter_s`. Without a new reading for `stuck_s`, the sensor
     /// is taken as broken.
-    pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
+    pub(super) fn new(filter_s: f64, stuck_s: Option<f64>) -> Self {
         Self {
-            interval_s,
             filter_s,
-            patience: stuck_s.map(|time| (time / interval_s).ceil().max(1.0) as u32),
+            patience: stuck_s.map(|time| time * (1.0 - ROUNDING)),
             filtered: f64::NAN,
             last: f64::NAN,
-            gap: 0,
+            gap: 0.0,
         }
     }
 
-    /// Classifies and filters the sensor's `reading`.
-    pub(super) fn read(&mut self, reading: f64) -> Sensed {
+    /// Classifies and filters the sensor's `reading`, `dt` s after the one before.
+    pub(super) fn read(&mut self, reading: f64, dt: f64) -> Sensed {
         let repeated = self.patience.is_some() && reading == self.last;
         if reading.is_finite() && !repeated {
             self.last = reading;
-            return Sensed::New(self.filter(reading));
+            return Sensed::New(self.filter(reading, dt));
         }
-        self.gap = self.gap.saturating_add(1);
+        self.gap += dt;
         if self.patience.is_none_or(|most| self.gap >= most) {
             Sensed::Broken
         } else if repeated {
@@ -75,9 +76,9 @@ impl Sensor {
     }
 
     /// Filters a valid value. After a gap the value counts for the whole time since the last one.
-    pub(super) fn filter(&mut self, value: f64) -> f64 {
-        let passed = self.interval_s * (f64::from(self.gap) + 1.0);
-        self.gap = 0;
+    pub(super) fn filter(&mut self, value: f64, dt: f64) -> f64 {
+        let passed = self.gap + dt;
+        self.gap = 0.0;
         let kept = match self.filtered.is_nan() || self.filter_s <= 0.0 {
             true => 0.0,
             false => (-passed / self.filter_s).exp(),
@@ -96,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_filter_is_that_of_a_first_order_body_whatever_is_lost() {
-        let mut whole = Sensor::new(0.1, 0.5, Some(1.0));
+        let mut whole = Sensor::new(0.5, Some(1.0));
         let mut lossy = whole.clone();
         // For a constant after a different start, both filters read the same values and end at the
         // same state.
@@ -107,8 +108,8 @@ mod tests {
                 1.0 + 1e-12 * f64::from(n)
             };
             let lost = n % 3 == 1;
-            let seen = whole.read(reading).value();
-            let sensed = lossy.read(if lost { f64::NAN } else { reading });
+            let seen = whole.read(reading, 0.1).value();
+            let sensed = lossy.read(if lost { f64::NAN } else { reading }, 0.1);
             assert_eq!(sensed == Sensed::Missing, lost);
             if let (Some(a), Some(b)) = (seen, sensed.value()) {
                 let exact = 1.0 - (-0.1 * f64::from(n) / 0.5).exp();
@@ -119,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_reading_that_stands_still_is_held_back_at_once_and_broken_after_its_time() {
-        let mut sensor = Sensor::new(0.1, 0.0, Some(0.3));
+        let mut sensor = Sensor::new(0.0, Some(0.3));
         let readings = [1.0, 1.0, 1.0, 1.0, f64::NAN, 1.0, 2.0, 2.0];
         use Sensed::{Broken, New, Repeated};
         let expected = [
@@ -132,34 +133,34 @@ mod tests {
             New(2.0),
             Repeated,
         ];
-        assert_eq!(readings.map(|y| sensor.read(y)), expected);
+        assert_eq!(readings.map(|y| sensor.read(y, 0.1)), expected);
     }
 
     #[test]
     fn lost_samples_do_not_hide_that_it_sticks() {
-        let mut sensor = Sensor::new(0.1, 0.0, Some(1.0));
+        let mut sensor = Sensor::new(0.0, Some(1.0));
         let last = (0..12)
-            .map(|n| sensor.read(if n % 2 == 0 { 1.0 } else { f64::NAN }))
+            .map(|n| sensor.read(if n % 2 == 0 { 1.0 } else { f64::NAN }, 0.1))
             .last();
         assert_eq!(last, Some(Sensed::Broken));
     }
 
     #[test]
     fn without_noise_equal_readings_are_believed() {
-        let mut sensor = Sensor::new(0.1, 0.0, None);
+        let mut sensor = Sensor::new(0.0, None);
         assert_eq!(
-            [1.0, 1.0, f64::NAN].map(|y| sensor.read(y)),
+            [1.0, 1.0, f64::NAN].map(|y| sensor.read(y, 0.1)),
             [Sensed::New(1.0), Sensed::New(1.0), Sensed::Broken]
         );
     }
 
     #[test]
     fn huge_readings_leave_no_trace() {
-        let mut sensor = Sensor::new(0.1, 0.1, None);
+        let mut sensor = Sensor::new(0.1, None);
         for reading in [f64::MAX, f64::MIN, f64::INFINITY, f64::MAX] {
-            assert!(sensor.read(reading).value().is_none_or(f64::is_finite));
+            assert!(sensor.read(reading, 0.1).value().is_none_or(f64::is_finite));
         }
-        let seen = (0..10_000).map(|_| sensor.read(1.0)).last();
+        let seen = (0..10_000).map(|_| sensor.read(1.0, 0.1)).last();
         assert_eq!(seen, Some(Sensed::New(1.0)));
     }
 }

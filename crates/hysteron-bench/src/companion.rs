@@ -1,0 +1,118 @@
+//! The file beside a log: by it a later run knows the log, and goes on where it ended.
+
+use crate::error::{Result, of_file};
+use hysteron::{AtomicFile, Own};
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+
+const FORMAT: &str = "hysteron-run";
+const VERSION: u32 = 1;
+
+/// What a log does not say itself. The rest of the state follows from its rows: the model and its
+/// learner run through them again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Companion {
+    format: String,
+    version: u32,
+    /// Name of the device.
+    pub(crate) device: String,
+    /// The columns of the log.
+    pub(crate) columns: Vec<String>,
+    /// Time of the log at which the run's time is zero, s.
+    pub(crate) origin_s: f64,
+    /// What to add to the device's numbers and times for those of the log.
+    pub(crate) shift: (u64, f64),
+    /// The last sample's number and time in the log; as of the beginning where the run was killed.
+    pub(crate) last: (u64, f64),
+    /// Length of the log, bytes; `None` while it is written.
+    pub(crate) bytes: Option<u64>,
+    /// How the run ended; `None` while it runs.
+    pub(crate) end: Option<String>,
+    /// What learned, and the model as it was at the end; `None` where nothing learned.
+    pub(crate) learner: Option<String>,
+    /// The learned model, as a model file has it.
+    pub(crate) model: Option<serde_json::Value>,
+}
+
+/// The path of the file beside a log.
+fn beside(log: &Path) -> PathBuf {
+    let mut name = log.as_os_str().to_owned();
+    name.push(".json");
+    name.into()
+}
+
+impl Companion {
+    pub(crate) fn new(device: &str, columns: Vec<String>) -> Self {
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            device: device.into(),
+            columns,
+            origin_s: 0.0,
+            shift: (0, 0.0),
+            last: (0, 0.0),
+            bytes: None,
+            end: None,
+            learner: None,
+            model: None,
+        }
+    }
+
+    /// Whether the file at `log` is one of ours that nobody has changed.
+    pub(crate) fn knows(log: &Path) -> bool {
+        let Ok(found) = Self::read(log) else {
+            return false;
+        };
+        let length = std::fs::metadata(log).map(|file| file.len()).ok();
+        found.bytes.is_none() || found.bytes == length
+    }
+
+    /// The file beside a log that a run goes on with.
+    ///
+    /// # Errors
+    /// As [`Companion::read`].
+    pub(crate) fn of(log: &Path) -> Result<Self> {
+        if !beside(log).exists() {
+            let what =
+                "there is no file beside this log to go on from, so that nothing can be resumed";
+            return Err(of_file(log, io::Error::other(what)));
+        }
+        Self::read(log)
+    }
+
+    /// Reads the file beside a log.
+    ///
+    /// # Errors
+    /// [`hysteron::Error::File`].
+    pub(crate) fn read(log: &Path) -> Result<Self> {
+        let path = beside(log);
+        let failed = |source| of_file(&path, source);
+        let text = std::fs::read(&path).map_err(failed)?;
+        let found: Self = serde_json::from_slice(&text).map_err(|error| {
+            failed(io::Error::other(format!(
+                "this is no companion of a log: {error}"
+            )))
+        })?;
+        if found.format != FORMAT || found.version != VERSION {
+            let what = format!(
+                "this is `{}` in version {}: `{FORMAT}` in version {VERSION} is needed",
+                found.format, found.version
+            );
+            return Err(failed(io::Error::other(what)));
+        }
+        Ok(found)
+    }
+
+    /// Writes the file beside a log.
+    ///
+    /// # Errors
+    /// [`hysteron::Error::File`].
+    pub(crate) fn write(&self, log: &Path) -> Result<()> {
+        let path = beside(log);
+        let text = serde_json::to_vec_pretty(self)
+            .map_err(|error| of_file(&path, io::Error::other(error)))?;
+        AtomicFile::create(path.as_path(), Own::SAME_BYTES)?.commit_with(&text)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,134 @@
+//! What cables, sensors and boards do, and what a run makes of it.
+
+use super::bench::{PID, Ran, bench, column};
+use super::device::{Fault, SAFE};
+use hysteron_bench::End;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+fn drives(ran: &Ran) -> Vec<f64> {
+    column(&ran.folder.path().join("run.csv"), "command")
+}
+
+/// The table of docs/bench.md: `cargo test -p hysteron-bench -- --nocapture every_fault`.
+#[test]
+fn every_fault_ends_as_it_has_to() {
+    let plain = drives(&bench(PID, &[]));
+    println!("| Fault | Times | Drive | Samples lost | End |\n| --- | --- | --- | --- | --- |");
+    let seven = |fault: Fault| (0..7).map(|n| (12 + 6 * n, fault)).collect::<Vec<_>>();
+    type Case = (&'static str, Vec<(u64, Fault)>, &'static str);
+    let cases: [Case; 15] = [
+        ("none", vec![], "done"),
+        ("a sample is dropped", seven(Fault::Drop), "done"),
+        ("a sample comes twice", seven(Fault::Double), "done"),
+        (
+            "a sample comes late, out of order",
+            seven(Fault::Old),
+            "done",
+        ),
+        ("a bit turns", seven(Fault::Corrupt), "done"),
+        ("half a line comes", seven(Fault::Cut), "done"),
+        ("500 lines of nonsense", seven(Fault::Flood), "done"),
+        ("a sample is 60 ms late", seven(Fault::Delay(60)), "done"),
+        ("a drive is dropped", seven(Fault::NoDrive), "done"),
+        ("a reading is `nan`", seven(Fault::Nan(1)), "done"),
+        ("a spike of 50", seven(Fault::Spike(50.0)), "done"),
+        ("the sensor stands still", vec![(20, Fault::Stuck)], "stuck"),
+        (
+            "readings are `nan` for good",
+            vec![(20, Fault::Nan(10_000))],
+            "lost",
+        ),
+        ("the device freezes", vec![(20, Fault::Freeze)], "lost"),
+        ("the line breaks", vec![(20, Fault::Kill)], "closed"),
+    ];
+    for (name, faults, end) in cases {
+        let ran = bench(PID, &faults);
+        assert_eq!(ran.summary.end.word(), end, "{name}: {}", ran.summary.end);
+        let commands = drives(&ran);
+        let highest = commands.iter().copied().fold(0.0, f64::max);
+        let drive = match end {
+            "done" => "goes on",
+            _ => "safe",
+        };
+        println!(
+            "| {name} | {} | {drive}, at most {highest:.2} | {} | {end} |",
+            faults.len(),
+            ran.summary.lost
+        );
+        // No fault drives to the limit, which the plain run does not come near.
+        let usual = plain.iter().copied().fold(0.0, f64::max);
+        assert!(usual < 7.5 && highest < 7.9, "{name}: {highest}");
+        if end == "done" {
+            let lost = ran.summary.samples + ran.summary.lost;
+            assert!((59..=61).contains(&lost), "{name}: {lost}");
+        }
+    }
+}
+
+#[test]
+fn a_spike_does_not_move_the_drive() {
+    let plain = drives(&bench(PID, &[]));
+    for size in [-1e6, -3.0, 2.0, 1e6] {
+        for at in [15, 30, 31, 55] {
+            let spiked = drives(&bench(PID, &[(at, Fault::Spike(size))]));
+            let pairs = plain.iter().zip(&spiked);
+            let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // The feedback holds for one sample; what it would have moved by is all that differs.
+            assert!(moved < 0.4, "{size} at {at}: {moved}");
+        }
+    }
+}
+
+#[test]
+fn the_devices_word_ends_a_run() {
+    let ran = bench(PID, &[(20, Fault::Ends)]);
+    assert_eq!(ran.summary.end, End::Device("limit".into()));
+    assert_eq!(ran.summary.end.code(), 6);
+}
+
+#[test]
+fn an_output_beyond_its_limits_ends_a_run() {
+    let text = PID.replace("slew = 40", "slew = 40, output = [-1, 8]");
+    let ran = bench(&text, &[]);
+    assert!(matches!(ran.summary.end, End::Limit(output) if output > 8.0));
+    assert_eq!(drives(&ran).last(), Some(&SAFE));
+    // A spike alone is not the output.
+    let calm = text.replace("duration_s = 3", "duration_s = 1");
+    let spiked = bench(&calm, &[(15, Fault::Spike(50.0))]);
+    assert_eq!(spiked.summary.end, End::Done);
+}
+
+#[test]
+fn random_faults_leave_the_drive_safe_and_the_log_whole() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    for case in 0..40 {
+        let count = rng.random_range(1..8);
+        let faults: Vec<(u64, Fault)> = (0..count)
+            .map(|_| {
+                let fault = match rng.random_range(0..16) {
+                    0 => Fault::Drop,
+                    1 => Fault::Double,
+                    2 => Fault::Corrupt,
+                    3 => Fault::Cut,
+                    4 => Fault::Old,
+                    5 => Fault::Flood,
+                    6 => Fault::Delay(rng.random_range(1..100)),
+                    7 => Fault::Nan(rng.random_range(1..20)),
+                    8 | 9 => Fault::Spike(10f64.powi(rng.random_range(-2..8))),
+                    10 => Fault::Stuck,
+                    11 | 12 => Fault::NoDrive,
+                    13 => Fault::Freeze,
+                    14 => Fault::Kill,
+                    _ => Fault::Ends,
+                };
+                (rng.random_range(1..60), fault)
+            })
+            .collect();
+        // `bench` checks what holds whatever happens.
+        let ran = bench(PID, &faults);
+        let gone = |(_, fault): &(u64, Fault)| fault.is_fatal() && *fault != Fault::Stuck;
+        let fatal = faults.iter().any(gone);
+        assert!(!fatal || ran.summary.end != End::Done, "{case}: {faults:?}");
+    }
+}

@@ -1,0 +1,198 @@
+//! Notices an output that stands still to the last bit where it has to move.
+
+/// Without a model: the drive has gone this share of its way to a limit, or of its range.
+const WAY: f64 = 0.45;
+const RANGE: f64 = 0.02;
+/// And it goes no further than this share of the way, or of the range.
+const ROOM: f64 = 0.5;
+/// With a model: it expects a change by this share of its output's range.
+const EXPECTED: f64 = 0.05;
+
+/// Without a model: a sensor that has given so many readings is alive. One that has not may be in
+/// front of a dead band.
+const ALIVE: u32 = 10;
+/// So many equal readings in a row are no chance, and no lag of the plant.
+const CHANCE: u32 = 3;
+
+/// What should move the output at a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cause {
+    /// The output that the model expects, and the range of its outputs.
+    pub(super) expected: Option<(f64, (f64, f64))>,
+    /// The drive that acts, or the command of an inner loop, and its limits.
+    pub(super) drive: f64,
+    pub(super) drives: (f64, f64),
+}
+
+/// Compares what stands still with what should have moved it since.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Standstill {
+    /// The last reading, and the cause when it was new.
+    since: Option<(f64, Cause)>,
+    /// For how many samples and s the output should have moved.
+    still: (u32, f64),
+    /// Whether the last reading was the one before it.
+    repeats: bool,
+    /// Readings that were new.
+    new: u32,
+}
+
+impl Standstill {
+    /// How long the output has stood still where it should have moved, s; `None` where it is not
+    /// stuck. `dt` is the time since the last sample.
+    pub(super) fn push(&mut self, reading: f64, cause: Cause, dt: f64) -> Option<f64> {
+        self.repeats = self.since.is_some_and(|(last, _)| last == reading);
+        match self.since {
+            Some((_, before)) if self.repeats => {
+                let (count, time) = self.still;
+                if count > 0 || self.should_move(before, cause) {
+                    self.still = (count.saturating_add(1), time + dt);
+                }
+            }
+            _ => {
+                (self.since, self.still) = (Some((reading, cause)), (0, 0.0));
+                self.new = self.new.saturating_add(1);
+            }
+        }
+        self.stuck_s()
+    }
+
+    /// As [`Standstill::push`] found it last.
+    pub(super) fn stuck_s(&self) -> Option<f64> {
+        let (count, time) = self.still;
+        (count >= CHANCE).then_some(time)
+    }
+
+    /// Where the drive may go while the output stands still and no model says whether it should: so
+    /// a stuck sensor does not drive to a limit.
+    pub(super) fn room(&self) -> Option<(f64, f64)> {
+        let (_, cause) = self.since.filter(|_| self.repeats)?;
+        let (low, high) = cause.drives;
+        let least = RANGE * (high - low);
+        let (below, above) = (ROOM * (cause.drive - low), ROOM * (high - cause.drive));
+        let room = (
+            cause.drive - below.max(least),
+            cause.drive + above.max(least),
+        );
+        (cause.expected.is_none() && self.new >= ALIVE).then_some(room)
+    }
+
+    fn should_move(&self, before: Cause, now: Cause) -> bool {
+        if let (Some((then, _)), Some((expected, (low, high)))) = (before.expected, now.expected) {
+            return (expected - then).abs() > EXPECTED * (high - low);
+        }
+        let (low, high) = now.drives;
+        let moved = now.drive - before.drive;
+        let way = match moved > 0.0 {
+            true => high - before.drive,
+            false => before.drive - low,
+        };
+        self.new >= ALIVE && moved.abs() > (WAY * way).max(RANGE * (high - low))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drive(drive: f64) -> Cause {
+        let (expected, drives) = (None, (0.0, 1.0));
+        Cause {
+            expected,
+            drive,
+            drives,
+        }
+    }
+
+    /// After some readings with a drive.
+    fn alive(at: f64) -> Standstill {
+        let mut still = Standstill::default();
+        for n in 0..ALIVE {
+            still.push(2.0 + f64::from(n), drive(at), 0.1);
+        }
+        still
+    }
+
+    fn expected(output: f64) -> Cause {
+        let expected = Some((output, (0.0, 10.0)));
+        Cause {
+            expected,
+            ..drive(0.5)
+        }
+    }
+
+    #[test]
+    fn an_output_at_rest_is_not_stuck() {
+        let mut still = Standstill::default();
+        for _ in 0..1000 {
+            assert_eq!(still.push(1.0, drive(0.3), 0.1), None);
+            assert_eq!(still.push(1.0, drive(0.31), 0.1), None);
+        }
+        let mut still = Standstill::default();
+        assert!((0..1000).all(|n| {
+            still
+                .push(1.0, expected(0.1 * f64::from(n % 2)), 0.1)
+                .is_none()
+        }));
+    }
+
+    #[test]
+    fn a_dead_band_at_the_beginning_is_crossed() {
+        let mut still = Standstill::default();
+        assert!((0..=100).all(|n| still.push(1.0, drive(0.01 * f64::from(n)), 0.1).is_none()));
+        assert_eq!(still.room(), None);
+    }
+
+    #[test]
+    fn one_that_should_have_moved_is_stuck_until_it_moves() {
+        let mut still = Standstill::default();
+        let outputs = [2.0, 3.0, 2.0, 3.0, 2.0];
+        let found = outputs.map(|output| still.push(1.0, expected(output), 0.1).is_some());
+        assert_eq!(found, [false, false, false, true, true]);
+        assert!(
+            still
+                .stuck_s()
+                .is_some_and(|time| (time - 0.4).abs() < 1e-9)
+        );
+        assert_eq!(still.push(1.1, expected(2.0), 0.1), None);
+    }
+
+    #[test]
+    fn a_drive_that_keeps_to_its_room_is_noticed() {
+        for start in [0.0, 0.1, 0.5, 0.9] {
+            let mut still = alive(start);
+            still.push(1.0, drive(start), 0.1);
+            assert_eq!(still.room(), None);
+            still.push(1.0, drive(start), 0.1);
+            let (low, high) = still.room().unwrap_or_default();
+            for end in [low, high] {
+                let mut still = still.clone();
+                let found = [0; 4]
+                    .map(|_| still.push(1.0, drive(end), 0.1))
+                    .last()
+                    .copied();
+                // Where there is hardly any way, there is no need.
+                let way = (end - start).abs();
+                assert_eq!(found.flatten().is_some(), way > 0.021, "{start} {end}");
+            }
+            assert!((low > 0.0 || start < 0.03) && high < 1.0);
+        }
+    }
+
+    #[test]
+    fn the_drive_never_comes_to_a_limit_before_it_is_noticed() {
+        for start in [0.0, 0.1, 0.5, 0.9] {
+            for way in [-1.0, 1.0] {
+                let (mut still, mut at) = (alive(start), start);
+                while still.push(1.0, drive(at), 0.1).is_none() && (0.0..=1.0).contains(&at) {
+                    at += 0.001 * way;
+                }
+                let from = if way > 0.0 { 1.0 - start } else { start };
+                assert!(
+                    (0.0..=1.0).contains(&at) || from < 0.03,
+                    "{start} {way} {at}"
+                );
+            }
+        }
+    }
+}
