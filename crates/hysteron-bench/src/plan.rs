@@ -254,14 +254,11 @@ impl Made {
         options: &ControllerOptions,
         model: &Model,
     ) -> Result<Compensator> {
-        let named = options.learner.as_deref();
-        let learner = match named.map(str::parse::<Learner>) {
-            Some(Ok(learner)) => learner,
-            Some(Err(error)) if named != Some("auto") => {
-                return Err(config.refused("controller.learner", error.to_string()));
+        let learner = match options.learner.as_deref().map(str::parse::<Learner>) {
+            Some(named) => {
+                named.map_err(|error| config.refused("controller.learner", error.to_string()))?
             }
-            // The default of `adapt`.
-            _ => options.options.learner,
+            None => options.options.learner,
         };
         self.learner = Some(learner);
         let options = AdaptOptions {
@@ -269,7 +266,7 @@ impl Made {
             ..options.options
         };
         let learning = match learner {
-            Learner::Refit => {
+            Learner::Auto | Learner::Refit => {
                 let adaptive = options.adaptive(model)?;
                 let beside = Beside::start(adaptive).map_err(|source| Error::Device {
                     name: device::name(config),
