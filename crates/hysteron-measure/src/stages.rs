@@ -111,8 +111,9 @@ fn ring(folder: &Path) -> Result<()> {
         "The valve with a pseudo-random input rings. Two slow sines of the same session do not show that:\n\
          their models are the same to the byte with and without `--dynamics auto`. Errors in percent of\n\
          the range, with a rest before each recording that explains its beginning. *Itself* is a fit to\n\
-         the sine, which is not judged on what it did not see. The last row of both sines is a jump,\n\
-         which only a ring follows.\n"
+         the sine, which is not judged on what it did not see. The last row of both sines is a jump of 3 %,\n\
+         which only a ring follows, and it decides this comparison: without that row the fits to the sines\n\
+         themselves err 0.21 and 0.13 %, about half of what the ring leaves.\n"
     );
     println!("| predicted | without | ring | itself | ring found |");
     println!("| --- | ---: | ---: | ---: | --- |");
