@@ -64,7 +64,15 @@ impl DriftBasis {
                 .iter()
                 .map(|part| part.weights.clone())
                 .collect(),
-            coefficients: dependence.factors(load)?,
+            coefficients: {
+                // The model's weights have the gain of the load's curves.
+                let gain = match &dependence.curves {
+                    Some(curves) => curves.at(load)?.gain,
+                    None => 1.0,
+                };
+                let factors = dependence.factors(load)?;
+                factors.iter().map(|factor| gain * factor).collect()
+            },
         })
     }
 

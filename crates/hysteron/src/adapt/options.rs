@@ -60,7 +60,7 @@ pub struct AutoOptions {
     pub squares: Option<(Adaptation<f64>, Refit)>,
 }
 
-/// Most operators of a model that [`Learner::Auto`] takes a matrix for: 40 levels have 820.
+/// Most operators of a model that [`Learner::Auto`] takes a matrix for: 44 levels have 990.
 const SQUARED: usize = 1000;
 
 impl AdaptOptions {
@@ -78,8 +78,8 @@ impl AdaptOptions {
     /// and the output is assumed to have no noise.
     ///
     /// # Errors
-    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Fixed`], [`Learner::Refit`] and
-    /// [`Learner::Load`], which are no estimators of weights.
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Auto`], [`Learner::Fixed`],
+    /// [`Learner::Refit`] and [`Learner::Load`], which are no estimators of weights.
     pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
         self.resolved(model, 0.0, 0.0)?.estimator()
     }
