@@ -2,9 +2,9 @@
 
 use super::basis::DriftBasis;
 use super::learner::Learner;
-use super::learns::{Core, Learns};
-use super::options::AutoOptions;
-use super::refit::Refit;
+use super::learns::Learns;
+use super::mixture::AutoOptions;
+use super::refit::{Core, Refit};
 use crate::error::{Error, Result};
 use crate::model::{Model, Operators, Sample, Sign, State, Wanted};
 use crate::progress::Progress;
@@ -524,5 +524,15 @@ impl Adaptive {
 
     fn sign(&self) -> Sign {
         self.offline.sign()
+    }
+}
+
+impl DriftBasis {
+    /// An estimator of the coefficients and the offset.
+    ///
+    /// # Errors
+    /// As [`Adaptive::of_basis`].
+    pub fn adaptive(self, options: Adaptation<f64>) -> Result<Adaptive> {
+        Adaptive::of_basis(&self.model, self.basis, &self.coefficients, options)
     }
 }

@@ -9,13 +9,26 @@
 //! last turning point of the input.
 
 use super::learner::Learner;
-use super::learns::{Core, Learns, writable};
+use super::learns::{Learns, writable};
+use super::refit::{Core, Refit};
 use super::shares::Shares;
 use super::window::TURN;
 use crate::error::Result;
 use crate::model::{Model, OperatorState};
 use crate::series::Turning;
-use hysteron_core::{Channel, Learning, Outcome, Reading, Watch, Watched};
+use hysteron_core::{Adaptation, Channel, Learning, Outcome, Reading, Watch, Watched};
+
+/// The options of the learners that [`Learner::Auto`] mixes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AutoOptions {
+    /// Of a few coefficients.
+    pub drift: Adaptation<f64>,
+    /// Of all weights, from increments.
+    pub increments: Adaptation<f64>,
+    /// Of all weights, by recursive least squares and by refits. `None` for a model with so many
+    /// operators that a step of these takes longer than a loop has.
+    pub squares: Option<(Adaptation<f64>, Refit)>,
+}
 
 /// How far a model that settles goes on after the last cycle, in differences of the last two.
 const TREND: f64 = 0.5;

@@ -4,6 +4,7 @@ use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
 use crate::adapt::learner::{AdaptOptions, Learner};
 use crate::adapt::load::AdaptiveLoad;
+use crate::adapt::mixture::AutoOptions;
 use crate::adapt::refit::Refit;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
@@ -46,18 +47,6 @@ pub enum EstimatorOptions {
     Refit(Refit),
     /// Those of the estimator of the shift.
     Shift(ShiftOptions<f64>),
-}
-
-/// The options of the learners that [`Learner::Auto`] mixes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AutoOptions {
-    /// Of a few coefficients.
-    pub drift: Adaptation<f64>,
-    /// Of all weights, from increments.
-    pub increments: Adaptation<f64>,
-    /// Of all weights, by recursive least squares and by refits. `None` for a model with so many
-    /// operators that a step of these takes longer than a loop has.
-    pub squares: Option<(Adaptation<f64>, Refit)>,
 }
 
 /// Most operators of a model that [`Learner::Auto`] takes a matrix for: 44 levels have 990.
