@@ -8,12 +8,11 @@ use clap::{Command, CommandFactory, Error, Parser};
 use std::path::Path;
 
 /// What people call a task, and the command that does it.
-const MEANT: [(&str, &str); 12] = [
+const MEANT: [(&str, &str); 11] = [
     ("identify", "fit"),
     ("train", "fit"),
     ("model", "fit"),
     ("predict", "simulate"),
-    ("run", "simulate"),
     ("validate", "evaluate"),
     ("test", "evaluate"),
     ("clean", "prepare"),

@@ -102,6 +102,7 @@ impl HeldOut {
 /// - As [`Fit::run`] and [`Recording::split`].
 /// - [`Error::Fit`] for rows of several recordings; for a model that depends on time
 ///   if anything else is held out than rows at the end, because such a model needs every sample.
+///   [`crate::Dynamics::Auto`] then looks for nothing.
 pub fn fit_holding_out(
     fit: &Fit<'_>,
     recordings: &(impl AsRef<[Recording]> + ?Sized),
@@ -126,13 +127,18 @@ pub fn fit_holding_out(
         .collect::<Result<_>>()?;
     let training: Vec<Recording> = splits.iter().flat_map(|s| s.training.clone()).collect();
     let begins_inside = splits.iter().any(|split| split.begins_inside);
-    let fit = match begins_inside {
+    let mut fit = match begins_inside {
         true => fit.clone().start(Start::Unknown),
         false => fit.clone(),
     };
+    let ends_alone = splits.iter().all(|split| split.is_head);
+    if !ends_alone {
+        // A ring that nobody asked for could not be judged.
+        fit = fit.without_auto_dynamics();
+    }
     let mut model = fit.run(&training)?;
     let needs_time = model.is_timed();
-    if needs_time && !splits.iter().all(|split| split.is_head) {
+    if needs_time && !ends_alone {
         return Err(Error::Fit(
             "a model that depends on time needs every sample before a row: hold out rows at the \
              end, or another recording"

@@ -175,7 +175,8 @@ impl<T: Real> Axis<'_, T> {
     /// ```
     /// use hysteron_core::{Axis, Loaded, Plane, Registration};
     /// let plane = Plane::new(1.0, 2.0, 2)?;
-    /// let registration = Registration { knots: &[0.0, 2.0], rising: &[5.0, 7.0], falling: &[1.0, 3.0] };
+    /// let (rising, falling) = (&[5.0, 7.0][..], &[1.0, 3.0][..]);
+    /// let registration = Registration { knots: &[0.0, 2.0], rising, falling };
     /// let axis = Axis { registration, ..Axis::PLAIN };
     /// let after = |held, temperature| axis.seen(&plane, Loaded::NONE, held, temperature);
     /// assert_eq!(after(0.0, 6.0), 1.0); // it rises

@@ -17,7 +17,8 @@ use crate::state::State;
 /// The constants of all stages around the operators of a [`Model`]. Each stage can be left out.
 ///
 /// ```text
-/// T = body(drive)    x = W(R(a(σ) T − s(σ)))    h = operators(x)    y = offset + o(σ) + sign · behind(g(σ) h)
+/// T = body(drive)    x = W(R(a(σ) T − s(σ)))    h = operators(x)
+/// y = offset + o(σ) + sign · behind(g(σ) h)
 /// ```
 ///
 /// ```

@@ -1,7 +1,8 @@
 //! The stages before and after the operators, from the drive of an actuator to its output.
 //!
 //! ```text
-//! drive ─▶ body ─▶ temperature ─▶ axis (load, registration, spacing) ─▶ operators ─▶ behind ─▶ output
+//! drive ─▶ body ─▶ temperature
+//!       ─▶ axis (load, registration, spacing) ─▶ operators ─▶ behind ─▶ output
 //! ```
 //!
 //! - [`Body`]: first-order heating and cooling, from the drive to the temperature.

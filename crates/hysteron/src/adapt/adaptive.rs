@@ -2,9 +2,9 @@
 
 use super::basis::DriftBasis;
 use super::learner::Learner;
-use super::learns::{Core, Learns};
-use super::options::AutoOptions;
-use super::refit::Refit;
+use super::learns::Learns;
+use super::mixture::AutoOptions;
+use super::refit::{Core, Refit};
 use crate::error::{Error, Result};
 use crate::model::{Model, Operators, Sample, Sign, State, Wanted};
 use crate::progress::Progress;
@@ -202,14 +202,20 @@ impl Adaptive {
         }
         let factor = self.sign().factor();
         let model = factor * (self.core.output(&there.operators) + self.level());
-        let ahead = self.stages().offset + factor * self.core.output(&there.operators);
+        let (offset, knots) = (self.stages().offset, self.knots.clone());
+        let ahead = offset + factor * self.core.output(&there.operators);
         let learning = self.learn(there.operators.input(), seen)?;
         // A mixture expects something else of this sample than its model says.
         let output = match learning.output - model {
             0.0 => expected.output,
             more => {
                 let past = Some(self.state.stages).filter(StageState::is_started);
-                self.stages().after(past, dt, ahead + more).0
+                let mut before = self.stages();
+                before.offset = offset;
+                if !knots.is_empty() {
+                    before.behind.curve.sums = &knots;
+                }
+                before.after(past, dt, ahead + more).0
             }
         };
         (self.state.stages, self.measured) = (there.stages, Some(after));
@@ -291,7 +297,8 @@ impl Adaptive {
         pairs().enumerate().map(step).collect()
     }
 
-    /// Moves to a sample and returns the output expected there, without learning.
+    /// Moves to a sample and returns the output expected there, without learning. Of a mixture it
+    /// is that of its model, not what [`Adaptive::step`] expects by the learners' last errors.
     ///
     /// # Errors
     /// As [`Model::step`]; then nothing is changed.
@@ -517,5 +524,15 @@ impl Adaptive {
 
     fn sign(&self) -> Sign {
         self.offline.sign()
+    }
+}
+
+impl DriftBasis {
+    /// An estimator of the coefficients and the offset.
+    ///
+    /// # Errors
+    /// As [`Adaptive::of_basis`].
+    pub fn adaptive(self, options: Adaptation<f64>) -> Result<Adaptive> {
+        Adaptive::of_basis(&self.model, self.basis, &self.coefficients, options)
     }
 }

@@ -1,9 +1,7 @@
 //! A basis for the changes of weights under load and drift, in place of all weights.
 
-use crate::adapt::adaptive::Adaptive;
 use crate::error::Result;
 use crate::model::Model;
-use hysteron_core::Adaptation;
 use hysteron_core::{operator_index, operators};
 
 /// Levels by which the weights are shifted along the diagonal of the plane.
@@ -64,7 +62,15 @@ impl DriftBasis {
                 .iter()
                 .map(|part| part.weights.clone())
                 .collect(),
-            coefficients: dependence.factors(load)?,
+            coefficients: {
+                // The model's weights have the gain of the load's curves.
+                let gain = match &dependence.curves {
+                    Some(curves) => curves.at(load)?.gain,
+                    None => 1.0,
+                };
+                let factors = dependence.factors(load)?;
+                factors.iter().map(|factor| gain * factor).collect()
+            },
         })
     }
 
@@ -87,13 +93,5 @@ impl DriftBasis {
             basis: SHIFTS.iter().map(member).collect(),
             coefficients: SHIFTS.iter().map(coefficient).collect(),
         }
-    }
-
-    /// An estimator of the coefficients and the offset.
-    ///
-    /// # Errors
-    /// As [`Adaptive::of_basis`].
-    pub fn adaptive(self, options: Adaptation<f64>) -> Result<Adaptive> {
-        Adaptive::of_basis(&self.model, self.basis, &self.coefficients, options)
     }
 }

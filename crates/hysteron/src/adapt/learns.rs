@@ -2,16 +2,13 @@
 //! refit over a window, or a mixture of these.
 
 use super::mixture::Mixture;
-use super::refit::{Refit, Refitter};
+use super::refit::{Core, Refit, Refitter};
 use crate::error::{Error, Result};
 use crate::model::{Model, OperatorState, Operators};
 use hysteron_core::{
     Adaptation, Channel, Estimator, Learning, Method, Outcome, estimator_len,
     estimator_len_of_basis, table_len,
 };
-
-/// A model whose weights are written anew.
-pub(super) type Core = hysteron_core::Model<f64, Vec<f64>>;
 
 /// What finds the weights and the offset. Outputs are without the sign.
 #[derive(Debug, Clone)]

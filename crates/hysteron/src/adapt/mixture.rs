@@ -1,7 +1,7 @@
 //! A mixture of learners: several learn side by side, and the model is their mean.
 //!
 //! All of them are over one plane, and their weights are zero or above. So the mean of their
-//! weights, each by its share, is again such a model: it has one inverse, and costs one.
+//! weights, each by its share, is again such a model: one inverse, at the cost of one model.
 //!
 //! Shares come from errors at two horizons ([`Shares`]). The output *expected* at the next sample is
 //! the mean by the errors of such expectations. The *model*, which an inverse uses and a file
@@ -9,13 +9,26 @@
 //! last turning point of the input.
 
 use super::learner::Learner;
-use super::learns::{Core, Learns, writable};
+use super::learns::{Learns, writable};
+use super::refit::{Core, Refit};
 use super::shares::Shares;
 use super::window::TURN;
 use crate::error::Result;
 use crate::model::{Model, OperatorState};
 use crate::series::Turning;
-use hysteron_core::{Channel, Learning, Outcome, Reading, Watch, Watched};
+use hysteron_core::{Adaptation, Channel, Learning, Outcome, Reading, Watch, Watched};
+
+/// The options of the learners that [`Learner::Auto`] mixes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AutoOptions {
+    /// Of a few coefficients.
+    pub drift: Adaptation<f64>,
+    /// Of all weights, from increments.
+    pub increments: Adaptation<f64>,
+    /// Of all weights, by recursive least squares and by refits. `None` for a model with so many
+    /// operators that a step of these takes longer than a loop has.
+    pub squares: Option<(Adaptation<f64>, Refit)>,
+}
 
 /// How far a model that settles goes on after the last cycle, in differences of the last two.
 const TREND: f64 = 0.5;
@@ -40,10 +53,12 @@ struct Kept {
 }
 
 impl Kept {
-    /// Takes what `learns` has learned.
-    fn take(&mut self, learns: &Learns) -> Result<()> {
-        (self.weights, self.offset) = (learns.weights(), learns.level());
-        Ok(self.core.set_weights(&self.weights)?)
+    /// Takes what `learns` has learned, unless its weights cannot be summed.
+    fn take(&mut self, learns: &Learns) {
+        let (weights, offset) = (learns.weights(), learns.level());
+        if self.core.set_weights(&weights).is_ok() {
+            (self.weights, self.offset) = (weights, offset);
+        }
     }
 
     /// The output at a state, which may be one of other weights.
@@ -56,7 +71,9 @@ impl Kept {
 /// The shares of both horizons.
 #[derive(Debug, Clone)]
 struct Both {
+    /// One sample ahead.
     near: Shares,
+    /// A stroke ahead.
     far: Shares,
 }
 
@@ -73,7 +90,8 @@ pub(super) struct Mixture {
     /// stands still has said is undone by them.
     trusted: Both,
     pending: Both,
-    good: Both,
+    /// The last good shares, and the trend with them.
+    good: (Both, Option<Learns>),
     /// The mean of the experts, by the far shares.
     weights: Vec<f64>,
     offset: f64,
@@ -81,7 +99,6 @@ pub(super) struct Mixture {
     tolerance: f64,
     /// A state for weights of the past.
     there: OperatorState,
-    stuck: Option<Channel>,
     frozen: bool,
 }
 
@@ -105,12 +122,12 @@ impl Mixture {
         let experts = learners.into_iter().map(|(name, (own, learns))| {
             let mut state = state.clone();
             own.rebase(&mut state)?;
-            let (weights, offset) = (learns.weights(), learns.level());
-            let kept = Kept {
+            let mut kept = Kept {
                 core: core.clone(),
-                weights,
-                offset,
+                weights: model.weights().to_vec(),
+                offset: learns.level(),
             };
+            kept.take(&learns);
             Ok(Expert {
                 name,
                 core: own,
@@ -131,7 +148,10 @@ impl Mixture {
             watch: Watch::new(high - low, model.plane().levels() as f64),
             trusted: shares.clone(),
             pending: shares.clone(),
-            good: shares.clone(),
+            good: (
+                shares.clone(),
+                trend.map(|(_, trend)| experts[trend].learns.clone()),
+            ),
             shares,
             trend,
             weights: model.weights().to_vec(),
@@ -139,7 +159,6 @@ impl Mixture {
             turning: Turning::new(tolerance),
             tolerance,
             there: state,
-            stuck: None,
             frozen: false,
             experts,
         };
@@ -160,8 +179,15 @@ impl Mixture {
         self.offset
     }
 
+    /// The channel that one of the experts finds stuck.
     pub(super) fn stuck(&self) -> Option<Channel> {
-        self.stuck
+        let mut found = self
+            .experts
+            .iter()
+            .filter_map(|expert| expert.learns.stuck());
+        let first = found.next()?;
+        let output = found.any(|channel| channel == Channel::Output);
+        Some(if output { Channel::Output } else { first })
     }
 
     /// As [`hysteron_core::Estimator::step`].
@@ -176,7 +202,7 @@ impl Mixture {
             return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
         }
         let step = core.step(state, input)?;
-        let (mut outputs, mut outcomes) = (Vec::new(), Vec::new());
+        let (mut outputs, mut outcomes, mut fell_silent) = (Vec::new(), Vec::new(), false);
         for Expert {
             core,
             state,
@@ -184,18 +210,14 @@ impl Mixture {
             ..
         } in &mut self.experts
         {
+            let before = learns.stuck();
             let learning = learns.step(core, state, input, measured)?;
+            fell_silent |= before.is_none() && learns.stuck().is_some();
             outputs.push(learning.output);
             outcomes.push(learning.outcome);
         }
         let output = self.shares.near.mean(outputs.iter().copied());
         let outcome = joint(&outcomes);
-        let before = self.stuck;
-        self.stuck = match outcome {
-            Outcome::OutputStuck => Some(Channel::Output),
-            Outcome::InputStuck => Some(Channel::Input),
-            _ => None,
-        };
         let believed = matches!(
             outcome,
             Outcome::Learned | Outcome::Waiting | Outcome::RolledBack
@@ -214,16 +236,17 @@ impl Mixture {
                 }
             }
         }
-        if self.stuck.is_some() && before.is_none() {
+        if fell_silent {
             self.undo()?;
         } else if believed {
             self.judge(state, &outputs, measured)?;
         }
-        if !self.frozen && self.turning.push(state.position()).is_some() {
+        let turned = !self.frozen && self.turning.push(state.position()).is_some();
+        if turned {
             self.turn()?;
         }
-        if !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
-            self.mix(core)?;
+        if turned || !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
+            self.mix(core);
             core.rebase(state)?;
         }
         Ok(Learning {
@@ -247,8 +270,9 @@ impl Mixture {
         Ok(())
     }
 
-    /// The input has turned: what is known now is kept for a judgement in strokes to come.
-    fn turn(&mut self) -> Result<()> {
+    /// Each expert uses what has come since its last refit. Returns whether one changed.
+    fn refit_all(&mut self) -> Result<bool> {
+        let mut changed = false;
         for Expert {
             core,
             state,
@@ -258,12 +282,19 @@ impl Mixture {
         {
             if learns.refit(core)? {
                 core.rebase(state)?;
+                changed = true;
             }
         }
+        Ok(changed)
+    }
+
+    /// The input has turned: what is known now is kept for a judgement in strokes to come.
+    fn turn(&mut self) -> Result<()> {
+        self.refit_all()?;
         self.extrapolate()?;
         for Expert { learns, kept, .. } in &mut self.experts {
             kept.swap(0, 1);
-            kept[0].take(learns)?;
+            kept[0].take(learns);
         }
         Ok(())
     }
@@ -291,29 +322,29 @@ impl Mixture {
             learns,
             ..
         } = &mut self.experts[trend];
-        core.set_weights(&weights)?;
-        core.rebase(state)?;
-        *learns = Learns::Fixed(weights, offset);
+        if core.set_weights(&weights).is_ok() {
+            core.rebase(state)?;
+            *learns = Learns::Fixed(weights, offset);
+        }
         Ok(())
     }
 
-    /// Writes the mean of the experts to `core`.
-    fn mix(&mut self, core: &mut Core) -> Result<()> {
+    /// Writes the mean of the experts to `core`, unless its weights cannot be summed.
+    fn mix(&mut self, core: &mut Core) {
         let shares = &self.shares.far;
-        self.offset = shares.mean(self.experts.iter().map(|expert| expert.learns.level()));
-        let each: Vec<Vec<f64>> = self
-            .experts
-            .iter()
-            .map(|expert| expert.learns.weights())
-            .collect();
-        for (n, mean) in self.weights.iter_mut().enumerate() {
-            // Rounding may take a mean of zeros and small numbers below zero.
-            *mean = shares.mean(each.iter().map(|weights| weights[n])).max(0.0);
+        let offset = shares.mean(self.experts.iter().map(|expert| expert.learns.level()));
+        let each = self.experts.iter().map(|expert| expert.learns.weights());
+        let each: Vec<Vec<f64>> = each.collect();
+        let mean = |n: usize| shares.mean(each.iter().map(|weights| weights[n]));
+        // Rounding may take a mean of zeros and small numbers below zero.
+        let weights: Vec<f64> = (0..self.weights.len()).map(|n| mean(n).max(0.0)).collect();
+        if core.set_weights(&weights).is_ok() {
+            (self.weights, self.offset) = (weights, offset);
         }
-        Ok(core.set_weights(&self.weights)?)
     }
 
-    /// Forgets what a channel that stands still has said; the experts have done so themselves.
+    /// Forgets what a channel that stands still has said. Each expert does so itself, when it finds
+    /// that out.
     fn undo(&mut self) -> Result<()> {
         self.shares = self.trusted.clone();
         self.begin_anew()
@@ -325,12 +356,12 @@ impl Mixture {
         (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
         if let Some((refit, _)) = self.trend {
             let Expert { learns, kept, .. } = &mut self.experts[refit];
-            kept[1].take(learns)?;
+            kept[1].take(learns);
             self.extrapolate()?;
         }
         for Expert { learns, kept, .. } in &mut self.experts {
             for kept in kept {
-                kept.take(learns)?;
+                kept.take(learns);
             }
         }
         Ok(())
@@ -366,8 +397,14 @@ impl Mixture {
             learns.realign(own)?;
         }
         self.turning = Turning::new(self.tolerance);
-        self.watch.restart();
+        self.trust();
         Ok(())
+    }
+
+    /// The present shares are trusted.
+    fn trust(&mut self) {
+        (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
+        self.watch.restart();
     }
 
     pub(super) fn freeze(&mut self, frozen: bool) {
@@ -379,16 +416,19 @@ impl Mixture {
     }
 
     pub(super) fn keep(&mut self) {
-        self.good = self.shares.clone();
-        (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
-        self.watch.restart();
+        let trend = self
+            .trend
+            .map(|(_, trend)| self.experts[trend].learns.clone());
+        self.good = (self.shares.clone(), trend);
+        self.trust();
         self.experts
             .iter_mut()
             .for_each(|expert| expert.learns.keep());
     }
 
     pub(super) fn roll_back(&mut self, core: &mut Core) -> Result<()> {
-        self.shares = self.good.clone();
+        let (shares, kept) = self.good.clone();
+        self.shares = shares;
         for Expert {
             core,
             state,
@@ -400,25 +440,25 @@ impl Mixture {
             core.rebase(state)?;
         }
         self.begin_anew()?;
-        self.mix(core)
+        if let (Some((_, trend)), Some(kept)) = (self.trend, kept) {
+            let Expert {
+                core,
+                state,
+                learns,
+                ..
+            } = &mut self.experts[trend];
+            core.set_weights(&kept.weights())?;
+            core.rebase(state)?;
+            *learns = kept;
+        }
+        self.mix(core);
+        Ok(())
     }
 
     pub(super) fn refit(&mut self, core: &mut Core) -> Result<bool> {
-        let mut changed = false;
-        for Expert {
-            core,
-            state,
-            learns,
-            ..
-        } in &mut self.experts
-        {
-            if learns.refit(core)? {
-                core.rebase(state)?;
-                changed = true;
-            }
-        }
+        let changed = self.refit_all()?;
         if changed {
-            self.mix(core)?;
+            self.mix(core);
         }
         Ok(changed)
     }

@@ -2,12 +2,12 @@
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
 //! output, then learned from. `learner` is the table of learners and their options, `options` what
-//! these come to for a model. `adaptive` is the model that learns
-//! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
-//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `mixture` has several of these side by side, each with one of the `shares`;
-//! `learns` is what finds the weights, one of them. `load` and `unknown_load`
-//! do the same for the shift of an unknown load. `counts` counts what was done with the samples,
-//! `stuck` finds where a channel stood still, and `drift` tells how far the model moved.
+//! these come to for a model. `adaptive` is the model that learns sample by sample: by an estimator
+//! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
+//! samples of a `window`, from their `sums`. `mixture` has several of these side by side, each with
+//! one of the `shares`; `learns` is the choice among all of these. `load` and `unknown_load` do the
+//! same for the shift of an unknown load. `counts` counts what was done with the samples, `stuck`
+//! finds where a channel stood still, and `drift` tells how far the model moved.
 
 mod adaptive;
 mod basis;
@@ -31,7 +31,8 @@ pub use counts::OutcomeCounts;
 pub use drift::Drift;
 pub use learner::{ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Learner};
 pub use load::AdaptiveLoad;
-pub use options::{AutoOptions, EstimatorOptions};
+pub use mixture::AutoOptions;
+pub use options::EstimatorOptions;
 pub use refit::Refit;
 pub use stuck::Stuck;
 pub use unknown_load::ShiftFound;
@@ -182,7 +183,7 @@ pub fn adapt(
             let before = learned.len();
             if last.is_none() && before + probation >= count {
                 adaptive.refit()?;
-                last = Some(adaptive.model()?);
+                last = Some((adaptive.model()?, adaptive.shares()));
             }
             let told = |what: &'static str, share: f64| {
                 let done = before as f64 + share * part.len() as f64;
@@ -195,14 +196,15 @@ pub fn adapt(
             learned.extend(adaptive.run(input, output, Progress::new(&told))?);
         }
     }
+    let (last, shares) = last.ok_or_else(no_samples)?;
     Learned {
         offline,
-        last: last.ok_or_else(no_samples)?,
+        last,
         learned,
         fixed,
         from_on,
         probation,
-        shares: adaptive.shares(),
+        shares,
         shift: None,
         options: learned_by,
     }

@@ -4,6 +4,7 @@ use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
 use crate::adapt::learner::{AdaptOptions, Learner};
 use crate::adapt::load::AdaptiveLoad;
+use crate::adapt::mixture::AutoOptions;
 use crate::adapt::refit::Refit;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
@@ -48,19 +49,7 @@ pub enum EstimatorOptions {
     Shift(ShiftOptions<f64>),
 }
 
-/// The options of the learners that [`Learner::Auto`] mixes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AutoOptions {
-    /// Of a few coefficients.
-    pub drift: Adaptation<f64>,
-    /// Of all weights, from increments.
-    pub increments: Adaptation<f64>,
-    /// Of all weights, by recursive least squares and by refits. `None` for a model with so many
-    /// operators that a step of these takes longer than a loop has.
-    pub squares: Option<(Adaptation<f64>, Refit)>,
-}
-
-/// Most operators of a model that [`Learner::Auto`] takes a matrix for: 40 levels have 820.
+/// Most operators of a model that [`Learner::Auto`] takes a matrix for: 44 levels have 990.
 const SQUARED: usize = 1000;
 
 impl AdaptOptions {
@@ -78,8 +67,8 @@ impl AdaptOptions {
     /// and the output is assumed to have no noise.
     ///
     /// # Errors
-    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Fixed`], [`Learner::Refit`] and
-    /// [`Learner::Load`], which are no estimators of weights.
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Auto`], [`Learner::Fixed`],
+    /// [`Learner::Refit`] and [`Learner::Load`], which are no estimators of weights.
     pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
         self.resolved(model, 0.0, 0.0)?.estimator()
     }

@@ -1,7 +1,6 @@
 //! Windowed refit: non-negative least squares over the last samples, again and again while the
 //! model runs.
 
-use super::learns::Core;
 use super::sums::Centred;
 use super::window::{Samples, Window};
 use crate::error::{Error, Result};
@@ -12,6 +11,9 @@ use hysteron_core::{
     Adaptation, Channel, Gate, Learning, Operator, Outcome, Reading, Verdict, Watch, Watched,
 };
 use serde::Serialize;
+
+/// A model whose weights are written anew.
+pub(super) type Core = hysteron_core::Model<f64, Vec<f64>>;
 
 /// By default a refit follows where so large a share of the window is new.
 const NEW: usize = 8;

@@ -239,6 +239,14 @@ impl<'a> Fit<'a> {
         self
     }
 
+    /// Looks for no dynamics that were not asked for.
+    pub(crate) fn without_auto_dynamics(mut self) -> Self {
+        if self.options.dynamics == Dynamics::Auto {
+            self.options.dynamics = Dynamics::Off;
+        }
+        self
+    }
+
     /// What is looked for behind the operators in recordings with time: by default a ring, a
     /// resonance of the second order, where the recordings excite one. It is taken only if it
     /// predicts parts of them that were left out. Recordings with a load get none.

@@ -63,8 +63,8 @@ impl Model {
         model
     }
 
-    /// The recording as [`Model::within`] sees it: its input behind body, load, registration and spacing, its
-    /// output in front of the stages behind the operators. For a model at one load.
+    /// The recording as [`Model::within`] sees it: its input behind body, load, registration
+    /// and spacing, its output in front of the stages behind the operators. For a model at one load.
     ///
     /// # Errors
     /// As [`Model::run_in`]; [`Error::Thermal`] where time stands still and the model has a lag

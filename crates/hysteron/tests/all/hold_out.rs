@@ -208,7 +208,10 @@ fn what_cannot_be_held_out_is_refused() {
     // A lag needs every sample before a row.
     let mut timed = recording;
     timed.time = Some((0..length).map(|n| n as f64).collect());
-    let lag = Fit::new().levels(8).bootstrap(0).lag(2.0);
+    let fit = Fit::new().levels(8).bootstrap(0);
+    // Nobody asked for a ring: branches can be held out as without time.
+    assert!(fit_holding_out(&fit, &timed, &HoldOut::Branches(0.2)).is_ok());
+    let lag = fit.lag(2.0);
     let refused = fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).unwrap_err();
     assert!(refused.to_string().contains("rows at the"), "{refused}");
     assert!(fit_holding_out(&lag, &timed, &HoldOut::Rows(vec![length - 50..=length])).is_ok());

@@ -2,8 +2,9 @@
 //!
 //! The shift of a load starts at the mean of the inputs at which its loop passes half its height.
 //! A search then moves the shifts so that one set of weights explains the loops of all loads, each
-//! scaled to its own height. The order of the weights in the load, and a scale of the axis, are
-//! taken where loads that were left out are predicted better with them.
+//! scaled to its own height. Before that, a registration of the loops is tried: at which input each
+//! fraction of the stroke is passed. Loads that are left out choose between these, the order of the
+//! weights in the load, a scale of the axis, and how the stroke goes between the loads.
 
 mod curves;
 mod groups;
@@ -34,7 +35,8 @@ const SMOOTH: Smooth = Smooth {
 /// Levels of the search. Shifts do not need more.
 const LEVELS: usize = 14;
 
-/// A more complex law has to predict loads left out better by this factor.
+/// A law of another kind than the best so far has to predict loads left out better by this factor.
+/// The registration comes first.
 const WORTH: f64 = 0.9;
 
 /// The law of the load, and what chose it.
@@ -163,7 +165,7 @@ pub(super) fn find(
     };
     let inner = search.inner().count();
     let mut ways = Vec::new();
-    // A range is one of inputs, which are no positions behind a registration.
+    // A range is given in inputs; behind a registration the axis has other numbers.
     let open = options.load_law == LoadLaw::Auto
         && options.load_degree.is_none()
         && options.range.is_none()
@@ -195,7 +197,14 @@ pub(super) fn find(
         return Err(Error::Fit("no law of the load was tried".into()));
     };
     let curves = &moves.curves;
-    let rows = fine(&curves.loads);
+    let rows = match law {
+        // Straight between the loads: their own rows say it all.
+        Tried::Gain {
+            stroke: Stroke::Straight,
+            ..
+        } => curves.loads.clone(),
+        _ => fine(&curves.loads),
+    };
     let (curves, uses_curves, degree) = match law {
         Tried::Registered { stroke } | Tried::Gain { stroke, .. } => {
             (stroke.at(curves, moves.reach, &rows), true, 0)

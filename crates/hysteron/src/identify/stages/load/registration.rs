@@ -116,7 +116,7 @@ impl Loops {
     /// The registration behind the shifts of `curves`, with a row for each of the loads `rows`.
     ///
     /// Between two loads the middle of the loop moves with the shift, and its shape goes over from
-    /// one to the other, each as strong as its stroke.
+    /// one to the other, weighted by the strokes.
     pub(super) fn registration(&self, curves: &LoadCurves, rows: &[f64]) -> Registration {
         let shifted: Vec<Loop> = self
             .known
@@ -151,11 +151,7 @@ impl Loops {
         for load in rows {
             let above = loads.partition_point(|known| known <= load);
             let a = above.max(1) - 1;
-            let b = if above == 0 {
-                0
-            } else {
-                above.min(loads.len() - 1)
-            };
+            let b = above.min(loads.len() - 1);
             // Beyond the outermost loads they are the same.
             let part = match a == b {
                 true => 0.0,
