@@ -18,7 +18,7 @@ const RESTING: f64 = 0.08;
 const MOVING: f64 = 0.25;
 
 /// The shift of a load is found only if the output moves by this share of the largest stroke.
-const TELLING: f64 = 0.12;
+pub(super) const TELLING: f64 = 0.12;
 
 /// All samples of the recordings in one series.
 pub(super) struct Samples {
@@ -53,6 +53,8 @@ pub(super) struct Groups {
     pub(super) group: Option<Vec<usize>>,
     /// Whether the output moves enough in a group to tell its shift.
     pub(super) telling: Vec<bool>,
+    /// Whether two groups or more have a stroke that shows the shape of their loop.
+    pub(super) show_loops: bool,
 }
 
 impl Groups {
@@ -71,6 +73,7 @@ impl Groups {
                 knots: (0..EVEN_KNOTS).map(knot).collect(),
                 group: None,
                 telling: vec![true; EVEN_KNOTS],
+                show_loops: false,
             };
         }
         let nearest = |load: f64| {
@@ -105,11 +108,13 @@ impl Groups {
             .iter()
             .map(|stroke| *stroke > TELLING * most)
             .collect();
-        if telling.iter().filter(|telling| **telling).count() < 2 {
+        let show_loops = telling.iter().filter(|telling| **telling).count() >= 2;
+        if !show_loops {
             telling.fill(true);
         }
         Self {
             telling,
+            show_loops,
             knots: loads,
             group: Some(group),
         }

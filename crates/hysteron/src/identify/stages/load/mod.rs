@@ -17,7 +17,7 @@ mod stroke;
 use crate::error::{Error, Result};
 use crate::identify::options::{FitOptions, LoadLaw};
 use crate::identify::stages::load::curves::{fine, moving_only};
-use crate::identify::stages::load::groups::{Groups, Samples};
+use crate::identify::stages::load::groups::{Groups, Samples, TELLING};
 use crate::identify::stages::load::registration::Loops;
 use crate::identify::stages::load::search::Search;
 use crate::identify::stages::load::stroke::Stroke;
@@ -169,7 +169,8 @@ pub(super) fn find(
     let open = options.load_law == LoadLaw::Auto
         && options.load_degree.is_none()
         && options.range.is_none()
-        && groups.group.is_some();
+        && groups.group.is_some()
+        && groups.show_loops;
     if open {
         ways.extend(search.registered()?);
     }
@@ -238,7 +239,16 @@ pub(super) fn find(
 /// The laws of stroke and offset that are tried where the axis moves so.
 fn candidates(moves: &Moves, options: &FitOptions, groups: &Groups) -> Vec<Tried> {
     let scaled = !moves.curves.scales.is_empty();
-    let strokes = Stroke::possible(&groups.knots).iter();
+    let [least, most] = [f64::min, f64::max].map(|of| {
+        let gains = moves.curves.gains.iter().copied();
+        gains.reduce(of).unwrap_or(1.0)
+    });
+    // Where no load between two can choose, a power through a stroke near zero is not trusted.
+    let strokes = match groups.knots.len() == 2 && least < TELLING * most {
+        true => &[Stroke::Straight],
+        false => Stroke::possible(&groups.knots),
+    };
+    let strokes = strokes.iter();
     match (options.load_degree, &groups.group) {
         _ if moves.loops.is_some() => strokes
             .map(|&stroke| Tried::Registered { stroke })
