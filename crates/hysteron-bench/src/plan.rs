@@ -266,7 +266,9 @@ impl Made {
             ..options.options
         };
         let learning = match learner {
-            Learner::Auto | Learner::Refit => {
+            // A refit would delay a sample, and a mixture that comes late would be another one.
+            Learner::Auto => Compensator::adaptive(options.adaptive_in_time(model)?),
+            Learner::Refit => {
                 let adaptive = options.adaptive(model)?;
                 let beside = Beside::start(adaptive).map_err(|source| Error::Device {
                     name: device::name(config),

@@ -134,9 +134,11 @@ impl Adaptive {
             (Learner::Drift.name(), coefficients),
             (Learner::Increments.name(), increments),
         ];
-        if let Some((squares, refit)) = options.squares {
+        if let Some(squares) = options.least_squares {
             let squares = Learns::weights_of(&model, squares)?;
             learners.push((Learner::LeastSquares.name(), squares));
+        }
+        if let Some(refit) = options.refit {
             learners.push((Learner::Refit.name(), Learns::refits(&model, refit)?));
         }
         Self::over(&model, Learns::mixture(&model, learners)?)

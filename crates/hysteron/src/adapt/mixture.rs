@@ -25,9 +25,12 @@ pub struct AutoOptions {
     pub drift: Adaptation<f64>,
     /// Of all weights, from increments.
     pub increments: Adaptation<f64>,
-    /// Of all weights, by recursive least squares and by refits. `None` for a model with so many
-    /// operators that a step of these takes longer than a loop has.
-    pub squares: Option<(Adaptation<f64>, Refit)>,
+    /// Of all weights, by recursive least squares. `None` for a model with so many operators that a
+    /// step takes longer than a loop has.
+    pub least_squares: Option<Adaptation<f64>>,
+    /// Of all weights, by refits, and their trend. `None` as before, and where no sample may take
+    /// longer than the others.
+    pub refit: Option<Refit>,
 }
 
 /// How far a model that settles goes on after the last cycle, in differences of the last two.

@@ -92,6 +92,19 @@ impl AdaptOptions {
         self.begun(model, self.resolved(model, 0.0, 0.0)?)
     }
 
+    /// As [`AdaptOptions::adaptive`], but a mixture has no refit: no sample takes much longer than
+    /// the others.
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::adaptive`].
+    pub fn adaptive_in_time(&self, model: &Model) -> Result<Adaptive> {
+        let mut options = self.resolved(model, 0.0, 0.0)?;
+        if let EstimatorOptions::Auto(auto) = &mut options {
+            auto.refit = None;
+        }
+        self.begun(model, options)
+    }
+
     /// As [`AdaptOptions::adaptive`], with the options that follow from a recording of the plant.
     /// It learns nothing from it.
     ///
@@ -153,11 +166,12 @@ impl AdaptOptions {
             Learner::Fixed => EstimatorOptions::Fixed,
             Learner::Auto => {
                 let of = |learner| Self { learner, ..*self }.weights(model, rough, range);
+                let few = model.plane().operators() <= SQUARED;
                 EstimatorOptions::Auto(AutoOptions {
                     drift: of(Learner::Drift),
                     increments: of(Learner::Increments),
-                    squares: (model.plane().operators() <= SQUARED)
-                        .then(|| (of(Learner::LeastSquares), self.windowed())),
+                    least_squares: few.then(|| of(Learner::LeastSquares)),
+                    refit: few.then(|| self.windowed()),
                 })
             }
             Learner::Refit => EstimatorOptions::Refit(self.windowed()),
