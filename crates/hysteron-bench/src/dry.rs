@@ -10,7 +10,7 @@ use crate::{device, log};
 /// What a run would do, as lines for people. Nothing is opened and nothing is sent.
 ///
 /// # Errors
-/// As [`run`], for what is known without a device.
+/// As [`crate::run`], for what is known without a device.
 pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
     let path = log_path(config, options)?;
     let sources = Sources::read(config)?;

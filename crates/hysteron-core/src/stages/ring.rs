@@ -14,7 +14,7 @@ use crate::stages::stage::Stage;
 /// lies within the unit circle: `1 + z > 0` comes to `sinh σ > ζ' sin(σ/ζ')` with `σ = ζωΔ` and
 /// `ζ' = ζ/√(1−ζ²)`, and `1 − z > 0` to `cosh σ > cos(σ/ζ')`. In a step that is short beside the
 /// period `z` comes close to −1, and the input alternates (Åström, Hagander and Sternby 1984). So
-/// the exact inverse is used only where little of that alternation is left; see [`Ring::aims`].
+/// the exact inverse is used only where little of that alternation is left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring<T> {
     /// The frequency `f` without damping, in Hz; 0 for no ring.
