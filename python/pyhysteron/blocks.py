@@ -35,7 +35,7 @@ __all__ = ["adaptive_block", "inverse_block", "memory", "model_block"]
 
 _HEADINGS = {1.0: "rising", -1.0: "falling"}
 #: Numbers of `State.save` for the stages of a model.
-_STAGES = 7
+_STAGES = 10
 #: Estimators that an adaptive block remembers, beside the one that it began with.
 _REMEMBERED = 64
 

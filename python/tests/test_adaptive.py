@@ -125,7 +125,7 @@ def test_guards():
 def test_a_refit_has_the_last_samples(sign):
     measured = model(1.4, sign).simulate(TEMPERATURE)
     for window in ["cycles:2", "samples:300"]:
-        adaptive = pyhysteron.Adaptive(model(1.0, sign), window=window, every=10**6, ridge=1e-6)
+        adaptive = pyhysteron.Adaptive(model(1.0, sign), method="refit", window=window, every=10**6, ridge=1e-6)
         errors = adaptive.run(TEMPERATURE, measured)["error"]
         # Nothing is learned on the way; the offset is added in another order.
         left = measured - model(1.0, sign).simulate(TEMPERATURE)
@@ -170,13 +170,13 @@ def test_it_cannot_be_pickled_but_its_model_can():
         ({"burst": 0}, pyhysteron.CoreError, "`burst` must be 1 or more"),
         ({"burst": -1}, ValueError, "`burst` is -1: a whole number"),
         ({"method": "increments", "trial": -1}, ValueError, "`trial` is -1: a whole number"),
-        ({"ridge": 0}, pyhysteron.FitError, "`ridge` must be above 0 and up to 1"),
-        ({"every": 0}, pyhysteron.FitError, "`every` must be 1 or more"),
+        ({"method": "refit", "ridge": 0}, pyhysteron.FitError, "`ridge` must be above 0 and up to 1"),
+        ({"method": "refit", "every": 0}, pyhysteron.FitError, "`every` must be 1 or more"),
         ({"window": "days:3"}, pyhysteron.FitError, "`window` is `days:3`: it must be cycles:1 to"),
         ({"window": 3}, TypeError, "`window` is 3: a text is needed"),
         ({"trial": 3}, pyhysteron.FitError, "`trial` is an option of"),
         ({"noise": 1.0}, pyhysteron.FitError, "`noise` is an option of"),
-        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'fixed', 'refit'"),
+        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'auto', 'fixed'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
         ({"gian": 0.3}, TypeError, "there is no argument `gian`"),
         ({"method": "increments", "gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),

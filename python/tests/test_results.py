@@ -90,5 +90,5 @@ def test_what_a_model_file_says_beside_is_kept():
     model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     input = np.linspace(0, 1, 50)
     adapted = pyhysteron.adapt(model, input, model.simulate(input)).model
-    assert adapted.fit.other["adapted"]["method"] == "refit"
+    assert adapted.fit.other["adapted"]["method"] == "auto"
     assert pyhysteron.Model.from_json(adapted.to_json()).fit == adapted.fit

@@ -92,7 +92,7 @@ def test_a_state_is_saved_whole(staged):
     rest = {name: series[899 if name == "time" else 900 :] for name, series in around.items()}
     whole = state.copy().run(input[900:], **rest)
     saved = state.save()
-    assert saved["stages"].shape == (7,) and saved["stages"][0] == 1
+    assert saved["stages"].shape == (10,) and saved["stages"][0] == 1
     as_text = json.loads(json.dumps({name: np.asarray(value).tolist() for name, value in saved.items()}))
     for again in (pickle.loads(pickle.dumps(state)), staged.restore(saved), staged.restore(as_text)):
         assert again.temperature == state.temperature
@@ -271,10 +271,10 @@ def test_what_a_step_refuses():
             made("body").inverse(drive_range)
     with pytest.raises(pyhysteron.FitError, match="horizon"):
         made("body").inverse(horizon=-1)
-    with pytest.raises(ValueError, match="7 are needed"):
+    with pytest.raises(ValueError, match="10 are needed"):
         made("body").restore({"turning_points": [0.0], "input": 0.0, "stages": [0.0]})
     with pytest.raises(pyhysteron.CoreError, match=r"`stages\[1\]` is NaN"):
-        made("body").restore({"turning_points": [0.0], "input": 0.0, "stages": [1.0] + 6 * [np.nan]})
+        made("body").restore({"turning_points": [0.0], "input": 0.0, "stages": [1.0] + 9 * [np.nan]})
 
 
 @pytest.mark.filterwarnings("ignore::pyhysteron.HysteronWarning")
@@ -383,7 +383,7 @@ def test_blocks_step_with_their_sample_time(staged):
     state = staged.start()
     state.run(input, **around)
     vector = blocks.memory(staged, state)
-    np.testing.assert_array_equal(vector[-7:], state.save()["stages"])
+    np.testing.assert_array_equal(vector[-10:], state.save()["stages"])
     if staged.is_timed:
         with pytest.raises(ValueError, match="depends on time"):
             blocks.model_block(staged, True)

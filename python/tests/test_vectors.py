@@ -27,7 +27,7 @@ def vectors(kind):
 def near(found, expected, tolerance):
     found, expected = np.asarray(found), np.asarray(expected)
     assert found.shape == expected.shape
-    assert np.abs(found - expected).max() <= tolerance
+    assert np.all(np.abs(found - expected) <= tolerance)
 
 
 def series(run):

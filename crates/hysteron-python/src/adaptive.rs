@@ -423,7 +423,8 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), every=100)
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> adaptive = pyhysteron.Adaptive(model, method='refit', every=100)
     /// >>> _ = adaptive.step(0.5, 4.5)
     /// >>> adaptive.output
     /// 4.0
