@@ -315,7 +315,8 @@ impl Model {
             let stages = stages.as_slice()?;
             let numbers = stages.try_into().map_err(|_| {
                 let found = stages.len();
-                PyValueError::new_err(format!("`stages` has {found} numbers: 7 are needed"))
+                let needed = state.stage_numbers().len();
+                PyValueError::new_err(format!("`stages` has {found} numbers: {needed} are needed"))
             })?;
             finite("stages", stages)?;
             state = state.with_stage_numbers(numbers).raise()?;
