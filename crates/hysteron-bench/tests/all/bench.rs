@@ -1,7 +1,7 @@
 //! What the tests run, and what has to hold of every run.
 
 use super::device::{Fault, Report, SAFE, start};
-use hysteron_bench::{Config, End, Options, Stop, Summary, run};
+use hysteron_bench::{Config, End, Error, Options, Stop, Summary, run};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -45,13 +45,7 @@ pub fn bench(text: &str, faults: &[(u64, Fault)]) -> Ran {
     let folder = folder();
     let (address, served) = start(faults.to_vec());
     let config = config(&folder, text, &format!("tcp = '{address}'"));
-    let summary = run(
-        &config,
-        &Options::default(),
-        &Stop::default(),
-        &mut |_| {},
-        &mut |_| {},
-    );
+    let summary = plain(&config, &Options::default());
     let ran = Ran {
         summary: summary.unwrap(),
         report: served.join().unwrap(),
@@ -59,6 +53,11 @@ pub fn bench(text: &str, faults: &[(u64, Fault)]) -> Ran {
     };
     check(&ran);
     ran
+}
+
+/// A run that nobody watches or stops.
+pub fn plain(config: &Config, options: &Options) -> Result<Summary, Error> {
+    run(config, options, &Stop::default(), &mut |_| {}, &mut |_| {})
 }
 
 pub fn config(folder: &TempDir, text: &str, device: &str) -> Config {

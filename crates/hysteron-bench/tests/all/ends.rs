@@ -1,6 +1,6 @@
 //! Somebody stops a run, or its log cannot be written.
 
-use super::bench::{PID, config, folder};
+use super::bench::{PID, config, folder, plain};
 use super::device::{SAFE, start};
 use hysteron_bench::{End, Options, Stop, run};
 
@@ -53,14 +53,7 @@ fn a_log_that_cannot_be_written_ends_a_run() {
         log: Some(path),
         ..Options::default()
     };
-    let found = run(
-        &config,
-        &options,
-        &Stop::default(),
-        &mut |_| {},
-        &mut |_| {},
-    )
-    .unwrap();
+    let found = plain(&config, &options).unwrap();
     assert_eq!(reader.join().unwrap(), 11);
     let report = served.join().unwrap();
     assert!(matches!(found.end, End::Log(_)), "{}", found.end);

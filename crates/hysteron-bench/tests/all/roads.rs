@@ -1,21 +1,15 @@
 //! The other ways to a device: a child on a pipe, and a serial line (a pseudo-terminal).
 
-use super::bench::{PID, config, folder, rows};
+use super::bench::{PID, config, folder, plain, rows};
 use hysteron_bench::protocol::closed;
-use hysteron_bench::{End, Options, Stop, run};
+use hysteron_bench::{End, Options};
 use std::io::{BufRead, BufReader, Write};
 use std::time::{Duration, Instant};
 
 fn ran(text: &str, device: &str) -> (tempfile::TempDir, hysteron_bench::Result<End>) {
     let folder = folder();
     let config = config(&folder, text, device);
-    let found = run(
-        &config,
-        &Options::default(),
-        &Stop::default(),
-        &mut |_| {},
-        &mut |_| {},
-    );
+    let found = plain(&config, &Options::default());
     (folder, found.map(|found| found.end))
 }
 

@@ -1,9 +1,9 @@
 //! Runs that go well: each mode, the row of a log, slew, beginning without a bump, going on.
 
-use super::bench::{PID, bench, column, config, folder, rows};
+use super::bench::{PID, bench, column, config, folder, plain, rows};
 use super::device::{DT, SAFE, start};
 use hysteron::{Model, Operator, Plane, Sign};
-use hysteron_bench::{Config, End, Options, Stop, dry_run, run};
+use hysteron_bench::{Config, End, Options, dry_run};
 
 const RECORD: &str = "mode = 'record'\nlog = 'run.csv'\nlimits = { drive = [0, 8] }\n\
                       profile = { table = 'profile.csv' }\n";
@@ -105,14 +105,7 @@ fn every_kind_of_controller_follows() {
         let (address, served) = start(vec![]);
         let config = config(&folder, &text, &format!("tcp = '{address}'"));
         let options = Options::default();
-        let found = run(
-            &config,
-            &options,
-            &Stop::default(),
-            &mut |_| {},
-            &mut |_| {},
-        )
-        .unwrap();
+        let found = plain(&config, &options).unwrap();
         let report = served.join().unwrap();
         assert_eq!(
             (&found.end, report.drive),
@@ -149,14 +142,7 @@ fn a_run_goes_on_where_it_ended() {
             resume,
             ..Options::default()
         };
-        let found = run(
-            &config,
-            &options,
-            &Stop::default(),
-            &mut |_| {},
-            &mut |_| {},
-        )
-        .unwrap();
+        let found = plain(&config, &options).unwrap();
         served.join().unwrap();
         found
     };
@@ -187,13 +173,7 @@ fn parquet_has_the_same_rows() {
     let folder = folder();
     let (address, served) = start(vec![]);
     let config = config(&folder, &text, &format!("tcp = '{address}'"));
-    let found = run(
-        &config,
-        &Options::default(),
-        &Stop::default(),
-        &mut |_| {},
-        &mut |_| {},
-    );
+    let found = plain(&config, &Options::default());
     served.join().unwrap();
     assert_eq!(found.unwrap().end, End::Done);
     let path = folder.path().join("run.parquet");
@@ -212,13 +192,7 @@ fn a_log_of_somebody_else_is_kept() {
     let log = folder.path().join("run.csv");
     std::fs::write(&log, "mine").unwrap();
     let config = config(&folder, RECORD, "tcp = '127.0.0.1:1'");
-    let refused = run(
-        &config,
-        &Options::default(),
-        &Stop::default(),
-        &mut |_| {},
-        &mut |_| {},
-    );
+    let refused = plain(&config, &Options::default());
     assert!(
         refused
             .unwrap_err()
@@ -244,13 +218,7 @@ fn a_simulated_plant_needs_no_device() {
         let folder = folder();
         let text = RECORD.replace("limits = { drive = [0, 8] }\n", "");
         let config = config(&folder, &text, &format!("simulated = '{kind}'"));
-        let found = run(
-            &config,
-            &Options::default(),
-            &Stop::default(),
-            &mut |_| {},
-            &mut |_| {},
-        );
+        let found = plain(&config, &Options::default());
         assert_eq!(found.unwrap().end, End::Done, "{kind}");
     }
 }
@@ -297,13 +265,7 @@ fn limits_wider_than_the_devices_are_refused_and_it_is_told_to_quit() {
     let (address, served) = start(vec![]);
     let text = RECORD.replace("[0, 8]", "[0, 11]");
     let config = config(&folder, &text, &format!("tcp = '{address}'"));
-    let refused = run(
-        &config,
-        &Options::default(),
-        &Stop::default(),
-        &mut |_| {},
-        &mut |_| {},
-    );
+    let refused = plain(&config, &Options::default());
     assert!(refused.unwrap_err().to_string().contains("wider"));
     let report = served.join().unwrap();
     assert!(report.quit && report.drives.is_empty());

@@ -202,23 +202,27 @@ impl Adaptive {
             let what = "time stands still, which a model with a lag cannot have while it learns";
             return Err(Error::Thermal(what.into()));
         }
-        let factor = self.sign().factor();
-        let model = factor * (self.core.output(&there.operators) + self.level());
-        let (offset, knots) = (self.stages().offset, self.knots.clone());
-        let ahead = offset + factor * self.core.output(&there.operators);
+        // Of a mixture: the stages before it learns, and what its model says in front of them.
+        let mixes = matches!(self.learner, Learns::Mixture(_));
+        let before = mixes.then(|| {
+            let (factor, sum) = (self.sign().factor(), self.core.output(&there.operators));
+            let offset = self.stages().offset;
+            let said = (factor * (sum + self.level()), offset + factor * sum);
+            (offset, self.knots.clone(), said)
+        });
         let learning = self.learn(there.operators.input(), seen)?;
         // A mixture expects something else of this sample than its model says.
-        let output = match learning.output - model {
-            0.0 => expected.output,
-            more => {
+        let output = match before {
+            Some((offset, knots, (model, ahead))) if learning.output != model => {
                 let past = Some(self.state.stages).filter(StageState::is_started);
-                let mut before = self.stages();
-                before.offset = offset;
+                let mut stages = self.stages();
+                stages.offset = offset;
                 if !knots.is_empty() {
-                    before.behind.curve.sums = &knots;
+                    stages.behind.curve.sums = &knots;
                 }
-                before.after(past, dt, ahead + more).0
+                stages.after(past, dt, ahead + (learning.output - model)).0
             }
+            _ => expected.output,
         };
         (self.state.stages, self.measured) = (there.stages, Some(after));
         Ok(Learning {

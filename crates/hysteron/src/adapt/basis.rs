@@ -55,6 +55,10 @@ impl DriftBasis {
         };
         let (low, high) = dependence.range();
         let load = load.unwrap_or(0.5 * (low + high));
+        // The model's weights have the gain of the load's curves.
+        let curves = dependence.curves.as_ref();
+        let gain = curves.map_or(Ok(1.0), |curves| curves.at(load).map(|at| at.gain))?;
+        let factors = dependence.factors(load)?;
         Ok(Self {
             model: model.at_load(load)?,
             basis: dependence
@@ -62,15 +66,7 @@ impl DriftBasis {
                 .iter()
                 .map(|part| part.weights.clone())
                 .collect(),
-            coefficients: {
-                // The model's weights have the gain of the load's curves.
-                let gain = match &dependence.curves {
-                    Some(curves) => curves.at(load)?.gain,
-                    None => 1.0,
-                };
-                let factors = dependence.factors(load)?;
-                factors.iter().map(|factor| gain * factor).collect()
-            },
+            coefficients: factors.iter().map(|factor| gain * factor).collect(),
         })
     }
 

@@ -202,7 +202,7 @@ fn level(model: &Model) -> f64 {
 
 /// A step of a model that does not change. `measured` and `offset` are without the sign.
 fn fixed(
-    core: &hysteron_core::Model<f64, Vec<f64>>,
+    core: &Core,
     state: &mut OperatorState,
     input: f64,
     (measured, offset): (f64, f64),
@@ -255,28 +255,25 @@ fn check_memory(numbers: usize) -> Result<()> {
 }
 
 /// A core model with the memory that the method needs.
-fn renewable(model: &Model, method: Method<f64>) -> Result<hysteron_core::Model<f64, Vec<f64>>> {
-    let model = operators(model)?;
+fn renewable(model: &Model, method: Method<f64>) -> Result<Core> {
     let tables = match method {
         Method::Increments { .. } => 2,
         _ => 1,
     };
-    let (plane, operator) = (*model.plane(), model.operator());
-    let table = vec![0.0; tables * table_len(plane.levels())];
-    Ok(hysteron_core::Model::new(
-        plane,
-        operator,
-        model.weights(),
-        table,
-    )?)
+    with_tables(model, tables)
 }
 
 /// A core model whose weights may be written at once. Its inverse exists only with weights of zero
 /// or above: others are refused.
 pub(super) fn writable(model: &Model) -> Result<Core> {
-    let (plane, operator) = (*operators(model)?.plane(), model.operator());
-    let table = vec![0.0; table_len(plane.levels())];
-    let core = hysteron_core::Model::new(plane, operator, model.weights(), table)?;
+    let core = with_tables(model, 1)?;
     core.inverse()?;
     Ok(core)
+}
+
+fn with_tables(model: &Model, tables: usize) -> Result<Core> {
+    let model = operators(model)?;
+    let (plane, operator) = (*model.plane(), model.operator());
+    let table = vec![0.0; tables * table_len(plane.levels())];
+    Ok(Core::new(plane, operator, model.weights(), table)?)
 }

@@ -8,6 +8,7 @@
 //! keeps, is for the stroke to come: its shares come from the errors of weights as they were at the
 //! last turning point of the input.
 
+use super::expert::Expert;
 use super::learner::Learner;
 use super::learns::{Learns, writable};
 use super::refit::{Core, Refit};
@@ -36,41 +37,6 @@ pub struct AutoOptions {
 /// How far a model that settles goes on after the last cycle, in differences of the last two.
 const TREND: f64 = 0.5;
 
-/// A learner that shares no state with the others.
-#[derive(Debug, Clone)]
-struct Expert {
-    name: &'static str,
-    core: Core,
-    state: OperatorState,
-    learns: Learns,
-    /// What it had learned at the last turning points of the input, the last one first.
-    kept: [Kept; 2],
-}
-
-/// Weights that nothing changes, and the offset.
-#[derive(Debug, Clone)]
-struct Kept {
-    core: Core,
-    weights: Vec<f64>,
-    offset: f64,
-}
-
-impl Kept {
-    /// Takes what `learns` has learned, unless its weights cannot be summed.
-    fn take(&mut self, learns: &Learns) {
-        let (weights, offset) = (learns.weights(), learns.level());
-        if self.core.set_weights(&weights).is_ok() {
-            (self.weights, self.offset) = (weights, offset);
-        }
-    }
-
-    /// The output at a state, which may be one of other weights.
-    fn output(&self, state: &mut OperatorState) -> Result<f64> {
-        self.core.rebase(state)?;
-        Ok(self.core.output(state) + self.offset)
-    }
-}
-
 /// The shares of both horizons.
 #[derive(Debug, Clone)]
 struct Both {
@@ -94,7 +60,7 @@ pub(super) struct Mixture {
     trusted: Both,
     pending: Both,
     /// The last good shares, and the trend with them.
-    good: (Both, Option<Learns>),
+    good: (Both, Option<(Vec<f64>, f64)>),
     /// The mean of the experts, by the far shares.
     weights: Vec<f64>,
     offset: f64,
@@ -122,23 +88,8 @@ impl Mixture {
             learners.push(("trend", (core.clone(), nothing)));
         }
         let trend = refit.map(|refit| (refit, learners.len() - 1));
-        let experts = learners.into_iter().map(|(name, (own, learns))| {
-            let mut state = state.clone();
-            own.rebase(&mut state)?;
-            let mut kept = Kept {
-                core: core.clone(),
-                weights: model.weights().to_vec(),
-                offset: learns.level(),
-            };
-            kept.take(&learns);
-            Ok(Expert {
-                name,
-                core: own,
-                state,
-                learns,
-                kept: [kept.clone(), kept],
-            })
-        });
+        let experts = learners.into_iter();
+        let experts = experts.map(|(name, own)| Expert::new(name, own, &core, &state));
         let experts: Vec<Expert> = experts.collect::<Result<_>>()?;
         let (low, high) = core.output_range();
         let shares = || Shares::new(experts.len(), high - low);
@@ -146,6 +97,7 @@ impl Mixture {
             near: shares(),
             far: shares(),
         };
+        let level = experts[0].learns.level();
         let tolerance = TURN * model.plane().levels() as f64;
         let mixture = Self {
             watch: Watch::new(high - low, model.plane().levels() as f64),
@@ -153,12 +105,12 @@ impl Mixture {
             pending: shares.clone(),
             good: (
                 shares.clone(),
-                trend.map(|(_, trend)| experts[trend].learns.clone()),
+                trend.map(|_| (model.weights().to_vec(), level)),
             ),
             shares,
             trend,
             weights: model.weights().to_vec(),
-            offset: experts[0].learns.level(),
+            offset: level,
             turning: Turning::new(tolerance),
             tolerance,
             there: state,
@@ -206,13 +158,13 @@ impl Mixture {
         }
         let step = core.step(state, input)?;
         let (mut outputs, mut outcomes, mut fell_silent) = (Vec::new(), Vec::new(), false);
-        for Expert {
-            core,
-            state,
-            learns,
-            ..
-        } in &mut self.experts
-        {
+        for expert in &mut self.experts {
+            let Expert {
+                core,
+                state,
+                learns,
+                ..
+            } = expert;
             let before = learns.stuck();
             let learning = learns.step(core, state, input, measured)?;
             fell_silent |= before.is_none() && learns.stuck().is_some();
@@ -276,17 +228,8 @@ impl Mixture {
     /// Each expert uses what has come since its last refit. Returns whether one changed.
     fn refit_all(&mut self) -> Result<bool> {
         let mut changed = false;
-        for Expert {
-            core,
-            state,
-            learns,
-            ..
-        } in &mut self.experts
-        {
-            if learns.refit(core)? {
-                core.rebase(state)?;
-                changed = true;
-            }
+        for expert in &mut self.experts {
+            changed |= expert.refit()?;
         }
         Ok(changed)
     }
@@ -319,17 +262,7 @@ impl Mixture {
             .map(|(now, past)| beyond(*now, *past).max(0.0))
             .collect();
         let offset = beyond(learns.level(), past.offset);
-        let Expert {
-            core,
-            state,
-            learns,
-            ..
-        } = &mut self.experts[trend];
-        if core.set_weights(&weights).is_ok() {
-            core.rebase(state)?;
-            *learns = Learns::Fixed(weights, offset);
-        }
-        Ok(())
+        self.experts[trend].set(weights, offset)
     }
 
     /// Writes the mean of the experts to `core`, unless its weights cannot be summed.
@@ -372,32 +305,18 @@ impl Mixture {
 
     /// Others moved the state along its branches.
     pub(super) fn follow(&mut self, state: &OperatorState) -> Result<()> {
-        for Expert {
-            core,
-            state: own,
-            learns,
-            ..
-        } in &mut self.experts
-        {
-            own.clone_from(state);
-            core.rebase(own)?;
-            learns.follow(own)?;
+        for expert in &mut self.experts {
+            expert.move_to(state)?;
+            expert.learns.follow(&expert.state)?;
         }
         Ok(())
     }
 
     /// Others set the state.
     pub(super) fn realign(&mut self, state: &OperatorState) -> Result<()> {
-        for Expert {
-            core,
-            state: own,
-            learns,
-            ..
-        } in &mut self.experts
-        {
-            own.clone_from(state);
-            core.rebase(own)?;
-            learns.realign(own)?;
+        for expert in &mut self.experts {
+            expert.move_to(state)?;
+            expert.learns.realign(&expert.state)?;
         }
         self.turning = Turning::new(self.tolerance);
         self.trust();
@@ -419,9 +338,10 @@ impl Mixture {
     }
 
     pub(super) fn keep(&mut self) {
-        let trend = self
-            .trend
-            .map(|(_, trend)| self.experts[trend].learns.clone());
+        let trend = self.trend.map(|(_, trend)| {
+            let learns = &self.experts[trend].learns;
+            (learns.weights(), learns.level())
+        });
         self.good = (self.shares.clone(), trend);
         self.trust();
         self.experts
@@ -432,27 +352,10 @@ impl Mixture {
     pub(super) fn roll_back(&mut self, core: &mut Core) -> Result<()> {
         let (shares, kept) = self.good.clone();
         self.shares = shares;
-        for Expert {
-            core,
-            state,
-            learns,
-            ..
-        } in &mut self.experts
-        {
-            learns.roll_back(core)?;
-            core.rebase(state)?;
-        }
+        self.experts.iter_mut().try_for_each(Expert::roll_back)?;
         self.begin_anew()?;
-        if let (Some((_, trend)), Some(kept)) = (self.trend, kept) {
-            let Expert {
-                core,
-                state,
-                learns,
-                ..
-            } = &mut self.experts[trend];
-            core.set_weights(&kept.weights())?;
-            core.rebase(state)?;
-            *learns = kept;
+        if let (Some((_, trend)), Some((weights, offset))) = (self.trend, kept) {
+            self.experts[trend].set(weights, offset)?;
         }
         self.mix(core);
         Ok(())

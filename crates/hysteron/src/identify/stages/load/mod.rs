@@ -24,6 +24,7 @@ use crate::identify::stages::load::stroke::Stroke;
 use crate::model::{LoadCurves, Registration, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
+use crate::series::range;
 use serde::Serialize;
 
 /// Smoothness of the weights in the search, so that operators that few data touch stay small.
@@ -239,10 +240,7 @@ pub(super) fn find(
 /// The laws of stroke and offset that are tried where the axis moves so.
 fn candidates(moves: &Moves, options: &FitOptions, groups: &Groups) -> Vec<Tried> {
     let scaled = !moves.curves.scales.is_empty();
-    let [least, most] = [f64::min, f64::max].map(|of| {
-        let gains = moves.curves.gains.iter().copied();
-        gains.reduce(of).unwrap_or(1.0)
-    });
+    let (least, most) = range(&moves.curves.gains);
     // Where no load between two can choose, a power through a stroke near zero is not trusted.
     let strokes = match groups.knots.len() == 2 && least < TELLING * most {
         true => &[Stroke::Straight],
