@@ -714,6 +714,81 @@ class InverseTest(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Worst(_Result):
+    """The sample where a model errs most.
+
+    Attributes
+    ----------
+    recording : int
+        Number of its recording, from 0.
+    sample : int
+        Its number there, from 0.
+    time : float or None
+        In seconds; None without time.
+    input : float
+        The input.
+    measured : float
+        The output measured.
+    modelled : float
+        The output of the model.
+    """
+
+    recording: int
+    sample: int
+    time: float | None
+    input: float
+    measured: float
+    modelled: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Verdict(_Result):
+    """Whether a model is good enough, and if not, why: `Model.verdict`, `Evaluation.verdict`.
+
+    `print` shows its sentences.
+
+    Attributes
+    ----------
+    grade : str
+        `good` (drive by the inverse alone), `usable` (beside a controller), `poor`, or `untested`
+        where the model was tested only on what it was fitted to.
+    basis : str
+        What it was tested on: `other_recording`, `held_out`, `branches_left_out`, `parts_left_out`
+        or `fitted`.
+    rmse : float
+        Error of the output there, in its unit.
+    percent : float or None
+        The same in percent of the range; None for an output that does not move.
+    noise : float
+        Standard deviation of the white noise of the readings, in the output's unit; 0 if unknown.
+    inverse : Errors or None
+        Errors of the inverse while the output moves; None where it was not tested.
+    rival : tuple of str and float, or None
+        The best simple predictor, and its error in percent.
+    causes : tuple of (str, str)
+        Why the model is not better: a word and a sentence each, the weightiest first.
+    worst : Worst or None
+        Where it errs most; None where no recording was looked at.
+    text : str
+        All of it in sentences, a line each.
+    """
+
+    grade: str
+    basis: str
+    rmse: float
+    percent: float | None
+    noise: float
+    inverse: Errors | None
+    rival: tuple[str, float] | None
+    causes: tuple[tuple[str, str], ...]
+    worst: Worst | None
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Evaluation(_Result):
     """Forward and inverse tests on a recording: `Model.evaluate`.
 
@@ -723,6 +798,8 @@ class Evaluation(_Result):
         Modelled output, in the output's unit.
     forward : Errors
         Of the modelled output.
+    verdict : Verdict
+        Whether that is good enough.
     clipped : int
         Number of inputs outside the plane.
     estimated_from : int or None
@@ -742,6 +819,7 @@ class Evaluation(_Result):
 
     output_model: _Array
     forward: Errors
+    verdict: Verdict
     clipped: int
     estimated_from: int | None
     was_fitted: bool

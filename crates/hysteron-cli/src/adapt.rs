@@ -119,7 +119,7 @@ fn drift(adapted: &Adapted) -> String {
 }
 
 fn worse(adapted: &Adapted) -> String {
-    let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
+    let error = |errors: Errors| adapted.model.output.text(errors.rmse);
     let found = match adapted.late {
         Some(late) => format!(
             "over the last third it erred by {} (RMSE) before it learned, the model left alone by \
@@ -163,20 +163,20 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
 fn shift(found: &ShiftFound, model: &Model) -> String {
     let mut line = format!(
         "shift of the axis at the end {}, give or take {}",
-        text::with_unit(found.shift, &model.input),
+        model.input.text(found.shift),
         text::number(found.deviation)
     );
     if let (Some(load), Some(from), Some(dependence)) = (found.load, found.from, &model.load) {
         let (low, high) = dependence.range();
         line += &format!(
             " from that at {}; it tells {} {}",
-            text::with_unit(from, &dependence.quantity),
+            dependence.quantity.text(from),
             match load {
                 load if load <= low => "at most",
                 load if load >= high => "at least",
                 _ => "about",
             },
-            text::with_unit(load, &dependence.quantity)
+            dependence.quantity.text(load)
         );
     }
     line
@@ -194,8 +194,8 @@ fn to_text(
         let Compared { adapting, fixed } = compared;
         rows.push(vec![
             name.to_owned(),
-            text::with_unit(adapting.rmse, output),
-            text::with_unit(fixed.rmse, output),
+            output.text(adapting.rmse),
+            output.text(fixed.rmse),
             adapting.samples.to_string(),
         ]);
     };
@@ -249,9 +249,9 @@ fn to_text(
             "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of \
              their sum",
             text::number(moved.weights.0),
-            text::with_unit(moved.weights.1, output),
+            output.text(moved.weights.1),
             text::number(moved.offset.0),
-            text::with_unit(moved.offset.1, output),
+            output.text(moved.offset.1),
             100.0 * moved.moved
         ));
     }

@@ -3,7 +3,7 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, remedy, text};
-use hysteron::{AtomicFolder, Columns, Forward, Model, Recording, one_after_the_other};
+use hysteron::{AtomicFolder, Columns, Forward, Model, Recording, Verdict, one_after_the_other};
 use hysteron_report::{NamedForward, Report, Shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -14,6 +14,8 @@ struct Compared<'a> {
     recordings: Vec<Recording>,
     /// One for each model.
     runs: Vec<Forward>,
+    /// One for each model.
+    verdicts: Vec<Verdict>,
 }
 
 pub(crate) fn run(args: &args::Compare) -> Result<()> {
@@ -53,16 +55,19 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
     let mut compared = Vec::new();
     for data in data {
         let recordings = recording::segments(data, columns, &args.repair)?;
-        let mut runs = Vec::new();
+        let (mut runs, mut verdicts) = (Vec::new(), Vec::new());
         for (file, model) in files.iter().zip(&models) {
             let run = hysteron::forward(model, &recordings, args.start.into());
             let named = |error| format!("{}: {}", file.display(), remedy::text_of(&error));
-            runs.push(run.map_err(named)?);
+            let run = run.map_err(named)?;
+            verdicts.push(Verdict::of_forward(&recordings, &run)?);
+            runs.push(run);
         }
         compared.push(Compared {
             data,
             recordings,
             runs,
+            verdicts,
         });
     }
     let names: Vec<String> = files
@@ -111,9 +116,11 @@ fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> R
 
 fn to_json(all: &[Compared<'_>], names: &[String]) -> serde_json::Value {
     let recordings = all.iter().map(|compared| {
-        let models = names.iter().zip(&compared.runs).map(|(name, run)| {
+        let runs = compared.runs.iter().zip(&compared.verdicts);
+        let models = names.iter().zip(runs).map(|(name, (run, verdict))| {
             let mut object = json!(run.errors);
             object["model"] = json!(name);
+            object["verdict"] = json!(verdict);
             object["was_fitted"] = json!(run.was_fitted);
             object["seen_for_band"] = json!(run.seen_for_band);
             object
@@ -123,7 +130,7 @@ fn to_json(all: &[Compared<'_>], names: &[String]) -> serde_json::Value {
     json!({"recordings": recordings.collect::<Vec<_>>()})
 }
 
-/// A table for each recording; the best model first.
+/// A table for each recording, the best model first, and the verdict on that one.
 fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
     let table = |compared: &Compared<'_>| {
         let data = compared.data.display().to_string();
@@ -134,9 +141,13 @@ fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
             "% of range",
             "samples",
         ])];
-        let mut runs: Vec<(&String, &Forward)> = names.iter().zip(&compared.runs).collect();
-        runs.sort_by(|a, b| a.1.errors.rmse.total_cmp(&b.1.errors.rmse));
-        for (name, run) in runs {
+        let verdicts = compared.runs.iter().zip(&compared.verdicts);
+        let mut runs: Vec<_> = names.iter().zip(verdicts).collect();
+        runs.sort_by(|a, b| a.1.0.errors.rmse.total_cmp(&b.1.0.errors.rmse));
+        let best = runs.first().map(|(name, (_, verdict))| {
+            format!("\n\nthe best is {name}\n{}", text::verdict(verdict))
+        });
+        for (name, (run, _)) in runs {
             let quantity = &compared.recordings[0].output_quantity;
             let mut row = text::errors(name, &run.errors, quantity);
             let seen = match (run.was_fitted, run.seen_for_band) {
@@ -147,7 +158,7 @@ fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
             row.extend(seen.map(str::to_owned));
             rows.push(row);
         }
-        text::table(&rows)
+        text::table(&rows) + &best.unwrap_or_default()
     };
     all.iter().map(table).collect::<Vec<_>>().join("\n\n")
 }

@@ -58,11 +58,11 @@ fn summary(demo: &Reproduction) -> Result<String> {
     let inverse = evaluation.inverse.as_ref().map_err(Clone::clone)?;
     let fit = demo.model.fit.as_ref().ok_or("a fit says how it went")?;
     let forward = &evaluation.forward;
-    let mm = |value: f64| text::with_unit(value, &demo.model.output);
+    let mm = |value: f64| demo.model.output.text(value);
     let both = |part: Part, measure: fn(&Errors) -> f64| {
         [&inverse.hold, &inverse.anticipate].map(|run| {
             let value = part(run).map(measure);
-            value.map_or("none".into(), |v| text::with_unit(v, &demo.model.input))
+            value.map_or("none".into(), |v| demo.model.input.text(v))
         })
     };
     let mut rows = vec![

@@ -4,7 +4,8 @@ use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, recording, text};
 use hysteron::{
-    AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording, one_after_the_other,
+    AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording, Verdict,
+    one_after_the_other,
 };
 use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
@@ -32,6 +33,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         Some(_) => hysteron::evaluate_from(&model, &recordings, start)?,
         None => hysteron::evaluate_errors(&model, &recordings, start)?,
     };
+    let verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
     if let Some(mut folder) = folder {
         let behind = recordings
             .iter()
@@ -56,6 +58,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     }
     if args.json.json {
         let mut object = to_json(&evaluation);
+        object["verdict"] = json!(verdict);
         object["segments"] = json!(recordings.len());
         object["was_fitted"] = json!(evaluation.was_fitted);
         object["seen_for_band"] = json!(evaluation.seen_for_band);
@@ -69,7 +72,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         result += "\nthe band was widened to this recording: what it holds here says nothing of \
                    other sessions";
     }
-    print(&result)
+    print(&format!("{result}\n\n{}", text::verdict(&verdict)))
 }
 
 /// The JSON of an evaluation: `forward` and `inverse` with the same four measures each.

@@ -3,10 +3,10 @@
 mod lines;
 
 use crate::terminal::{Result, print, say};
-use crate::{args, hold_out, prepare, progress, recording};
+use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
     Advice, Choice, Columns, Dynamics, Fit, FitOptions, FitSummary, HeldOut, HoldOut, LoadLaw,
-    Model, Preparation, Progress, RateDependence, Recording, Sign, Solver, Spacing, Step,
+    Model, Preparation, Progress, RateDependence, Recording, Sign, Solver, Spacing, Step, Verdict,
     prior_of_fleet,
 };
 use lines::to_text;
@@ -58,10 +58,12 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             clipped = inputs;
         }
     }
+    let verdict = Verdict::of_fit(&model, &recordings)?;
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => {
             let mut object = to_json(args, &model, fit, clipped, &reports);
+            object["verdict"] = json!(verdict);
             if let Some(held_out) = &held_out {
                 object["hold_out"] = json!(held_out);
             }
@@ -70,7 +72,8 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         (Some(fit), false) => {
             let held_out = held_out.map(|held_out| hold_out::to_text(&held_out, &model));
             let lines = [Some(to_text(args, &model, fit)), held_out];
-            print(&lines.into_iter().flatten().collect::<Vec<_>>().join("\n"))
+            let lines = lines.into_iter().flatten().collect::<Vec<_>>().join("\n");
+            print(&format!("{lines}\n\n{}", text::verdict(&verdict)))
         }
     }
 }

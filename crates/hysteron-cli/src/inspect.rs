@@ -138,8 +138,8 @@ fn model(args: &args::Inspect) -> Result<()> {
         format!(
             "{} levels from {} to {} (step {}), {} operators",
             summary.levels,
-            text::with_unit(summary.plane.0, &model.input),
-            text::with_unit(summary.plane.1, &model.input),
+            model.input.text(summary.plane.0),
+            model.input.text(summary.plane.1),
             text::number(summary.step),
             summary.operators
         ),
@@ -156,13 +156,13 @@ fn model(args: &args::Inspect) -> Result<()> {
         format!(
             "{}: {} with all off, {} with all on",
             model.output.name,
-            text::with_unit(off, &model.output),
-            text::with_unit(on, &model.output)
+            model.output.text(off),
+            model.output.text(on)
         ),
         format!(
             "widest loop: {} at {}",
-            text::with_unit(summary.widest_loop, &model.output),
-            text::with_unit(summary.widest_loop_at, &model.input)
+            model.output.text(summary.widest_loop),
+            model.input.text(summary.widest_loop_at)
         ),
     ];
     if let Some(fit) = &model.fit {
@@ -177,9 +177,9 @@ fn model(args: &args::Inspect) -> Result<()> {
             fit.file
                 .as_ref()
                 .map_or(String::new(), |file| format!(" of {file}")),
-            text::with_unit(fit.rmse, &model.output),
+            model.output.text(fit.rmse),
             fit.nrmse_percent,
-            text::with_unit(fit.max_abs, &model.output)
+            model.output.text(fit.max_abs)
         ));
         lines.extend(text::confidence(fit, &model));
     }
@@ -219,7 +219,7 @@ fn least_certain(confidence: &ConfidenceSummary, model: &Model) -> String {
         "least certain weights{}, ± one standard error of {} replicates; offset ± {}\n{}",
         unit.map_or(String::new(), |unit| format!(" in {unit}")),
         confidence.replicates,
-        text::with_unit(confidence.offset_error, &model.output),
+        model.output.text(confidence.offset_error),
         text::table(&rows)
     )
 }

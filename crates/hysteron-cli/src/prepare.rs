@@ -127,8 +127,8 @@ fn judged_line(judged: &Judged, output: &Quantity) -> String {
         (Some(before), Some(after)) => format!(
             "{step}: {verdict}. With its {samples} samples a model errs by {} on what it did not \
              see, without by {}",
-            text::with_unit(after, output),
-            text::with_unit(before, output)
+            output.text(after),
+            output.text(before)
         ),
         _ => format!(
             "{step}: {verdict}. The recording is too short to tell whether its {samples} samples \
@@ -142,9 +142,9 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
     let (input, output) = (&recording.input_quantity, &recording.output_quantity);
     let mut lines = vec![format!(
         "noise: {} of {}, {} of {}",
-        text::with_unit(report.input_noise, input),
+        input.text(report.input_noise),
         input.name,
-        text::with_unit(report.output_noise, output),
+        output.text(report.output_noise),
         output.name
     )];
     lines.extend(report.spikes.as_ref().map(|spikes| {
@@ -194,10 +194,10 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
     lines.extend(report.dead_band.as_ref().map(|band| {
         format!(
             "dead band: {}, {} false reversals gone, {} samples moved by up to {}",
-            text::with_unit(band.size, input),
+            input.text(band.size),
             band.false_reversals,
             band.samples_changed,
-            text::with_unit(band.largest_change, input)
+            input.text(band.largest_change)
         )
     }));
     lines.extend(
@@ -225,7 +225,7 @@ fn low_pass_line(filter: &LowPass, recording: &Recording) -> String {
             "{} at {} {unit} ({} rms taken away)",
             quantity.name,
             text::number(smoothed.cutoff),
-            text::with_unit(smoothed.removed, quantity)
+            quantity.text(smoothed.removed)
         ),
     };
     format!("low-pass: {}", series.map(of).join(", "))
@@ -240,8 +240,8 @@ fn lag_line(lag: &SensorLag, recording: &Recording) -> String {
         (Some(tau), Some(before), Some(after)) => format!(
             "sensor lag: {undone}; with {} s a static model errs by {} rms, without by {}",
             text::number(tau),
-            text::with_unit(after, &recording.output_quantity),
-            text::with_unit(before, &recording.output_quantity)
+            recording.output_quantity.text(after),
+            recording.output_quantity.text(before)
         ),
         _ => format!("sensor lag: {undone}"),
     }

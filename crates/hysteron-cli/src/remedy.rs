@@ -20,8 +20,13 @@ pub(crate) fn text_of_doubt(doubt: &Doubt) -> String {
 }
 
 fn spelt(remedy: &Remedy) -> String {
-    remedy.spelt(|Setting { name, value }| match value {
+    remedy.spelt(option)
+}
+
+/// An option as it is typed.
+pub(crate) fn option(Setting { name, value }: &Setting) -> String {
+    match value {
         SettingValue::Any | SettingValue::On => format!("--{name}"),
         value => format!("--{name} {value}"),
-    })
+    }
 }

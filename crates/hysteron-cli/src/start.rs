@@ -4,7 +4,7 @@ use crate::terminal::{Result, Unclear, print, say};
 use crate::{args, hold_out, progress, recording, remedy, text};
 use hysteron::{
     Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, Roles,
-    TableReader, fit_holding_out, shell_word,
+    TableReader, Verdict, fit_holding_out, shell_word,
 };
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -47,6 +47,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let plane = hysteron::plane_of(&recordings, 20)?;
     let summary = hysteron::inspect_recording(&recordings, plane)?;
     let (model, held_out) = fit(&recordings)?;
+    let verdict = Verdict::of_fit(&model, &recordings)?;
     let mut advice = hysteron::advice(&model, &recordings)?;
     advice.extend(held_out.iter().flat_map(HeldOut::advice));
     let commands = commands(args, columns, held_out.is_some());
@@ -66,6 +67,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
             "recording": summary,
             "fit": model.fit,
             "hold_out": held_out,
+            "verdict": verdict,
             "advice": advice.iter().map(remedy::text_of_advice).collect::<Vec<_>>(),
             "commands": commands,
             "model": args.out,
@@ -75,6 +77,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let written = args.out.as_ref().map(|out| format!("\n{}", out.display()));
     let text = to_text(&summary, &model, held_out.as_ref());
     print(&(text + &written.unwrap_or_default()))?;
+    print(&format!("\n{}", text::verdict(&verdict)))?;
     for advice in &advice {
         say(format_args!("{}", remedy::text_of_advice(advice)));
     }
@@ -165,7 +168,7 @@ fn to_text(summary: &RecordingSummary, model: &Model, held_out: Option<&HeldOut>
         lines.push(format!(
             "a first fit: {} levels, RMSE {} ({:.2} % of the range) on what was fitted",
             model.plane().levels(),
-            text::with_unit(fit.rmse, &model.output),
+            model.output.text(fit.rmse),
             fit.nrmse_percent,
         ));
     }

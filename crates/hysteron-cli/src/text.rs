@@ -1,25 +1,25 @@
 //! Numbers and tables as text.
 
-use hysteron::{Errors, Excitation, FitSummary, Model, Quantity};
+use crate::remedy;
+use hysteron::{Confidence, Errors, Excitation, FitSummary, Model, Quantity, Verdict};
 
 /// A number with four significant digits.
 pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let digits = 3 - value.abs().log10().floor() as i32;
-    match digits {
-        -2..=8 => format!("{value:.*}", digits.max(0) as usize),
-        _ => format!("{value:.3e}"),
-    }
+    Quantity::default().text(value)
 }
 
-/// A number with its quantity's unit.
-pub(crate) fn with_unit(value: f64, quantity: &Quantity) -> String {
-    match &quantity.unit {
-        Some(unit) => format!("{} {unit}", number(value)),
-        None => number(value),
-    }
+/// What is to be said of a model: a line for each sentence, those of one kind under one heading.
+pub(crate) fn verdict(verdict: &Verdict) -> String {
+    let mut last = "";
+    let lines = verdict
+        .lines(remedy::option)
+        .into_iter()
+        .map(|(heading, text)| {
+            let shown = if heading == last { "" } else { heading };
+            last = heading;
+            format!("{shown:<8} {text}")
+        });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Columns side by side, the first aligned left, the others right.
@@ -50,8 +50,8 @@ pub(crate) fn errors(name: &str, errors: &Errors, quantity: &Quantity) -> Vec<St
     let percent = errors.nrmse_percent;
     vec![
         name.to_owned(),
-        with_unit(errors.rmse, quantity),
-        with_unit(errors.max_abs, quantity),
+        quantity.text(errors.rmse),
+        quantity.text(errors.max_abs),
         percent.map_or("–".into(), |percent| format!("{percent:.2}")),
         errors.samples.to_string(),
     ]
@@ -73,14 +73,19 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
             confidence.rank,
             confidence.unknowns,
             number(confidence.condition),
-            with_unit(confidence.sensor, &model.output),
-            with_unit(fit.misfit().unwrap_or_default(), &model.output)
+            model.output.text(confidence.sensor),
+            model.output.text(fit.misfit().unwrap_or_default())
         ),
-        match confidence.sessions {
-            0 | 1 => "the 95 % band holds within this session; --repeat FILE widens it to \
-                      others"
-                .to_owned(),
-            sessions => format!("the 95 % band holds for {sessions} sessions"),
-        },
+        sessions(confidence),
     ]
+}
+
+/// For what sessions the band holds.
+pub(crate) fn sessions(confidence: &Confidence) -> String {
+    match confidence.sessions {
+        0 | 1 => {
+            "the 95 % band holds within this session; --repeat FILE widens it to others".into()
+        }
+        sessions => format!("the 95 % band holds for {sessions} sessions"),
+    }
 }

@@ -171,6 +171,6 @@ fn to_text(scenario: &Scenario, comparison: &Comparison) -> String {
 fn number(value: f64, quantity: &Quantity) -> String {
     match value.is_nan() {
         true => "–".into(),
-        false => text::with_unit(value, quantity),
+        false => quantity.text(value),
     }
 }

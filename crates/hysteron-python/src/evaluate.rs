@@ -6,7 +6,7 @@ use crate::inputs::{Recordings, inputs_of, inputs_seen};
 use crate::integer::Integer;
 use crate::plane::on_plane;
 use crate::pool::detached;
-use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start, Surroundings};
+use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start, Surroundings, Verdict};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -129,6 +129,8 @@ pub(crate) fn evaluate<'py>(
     let found = detached(py, || hysteron::evaluate_from(model, recordings, start)).raise()?;
     let dict = PyDict::new(py);
     dict.set_item("forward", to_python(py, &found.forward)?)?;
+    let verdict = Verdict::of_evaluation(model, recordings, &found).raise()?;
+    dict.set_item("verdict", to_python(py, &verdict)?)?;
     dict.set_item("clipped", found.clipped)?;
     dict.set_item("estimated_from", found.estimated_from)?;
     dict.set_item("was_fitted", found.was_fitted)?;

@@ -266,6 +266,24 @@ impl Model {
             .transpose()
     }
 
+    /// Whether the model is good enough, from the record of its fit; None for a model without one.
+    ///
+    /// A `results.Verdict`. That of `Model.evaluate` also knows the worst sample and the inverse.
+    ///
+    /// Examples
+    /// --------
+    /// >>> x = [0.0, 1.0, 0.2, 0.9, 0.1, 1.0, 0.0]
+    /// >>> model = pyhysteron.fit(pyhysteron.Recording(x, x), levels=3, smooth=0)
+    /// >>> model.verdict.grade
+    /// 'untested'
+    #[getter]
+    fn verdict<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let verdict = hysteron::Verdict::of_record(&self.inner);
+        verdict
+            .map(|verdict| result_of(py, "Verdict", &verdict))
+            .transpose()
+    }
+
     /// Size, output range, widest loop and confidence in short.
     ///
     /// Returns

@@ -100,11 +100,14 @@ export function show(overview, drawn, draw, changed) {
   const row = (/** @type {import("./api.js").Fit} */ fit, /** @type {number} */ place) => {
     const options = Object.entries(fit.options).map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";
     const rival = fit.held_out?.rivals.reduce((a, b) => (a.rmse < b.rmse ? a : b));
+    const grade = fit.verdict[0]?.[1].split(":")[0];
+    const verdict = grade && el("details", {}, el("summary", { class: `grade ${grade.split(" ")[0]}` }, grade), el("dl", { class: "verdict" }, ...fit.verdict.flatMap(([heading, text]) => [el("dt", {}, heading), el("dd", {}, text)])));
     const toggle = (/** @type {any} */ event) => (event.target.checked ? drawn.add(fit.id) : drawn.delete(fit.id), draw());
     return el(
       "tr",
       { class: fit.id === overview.best ? "best" : null },
       el("td", {}, el("label", { style: "white-space:nowrap" }, el("input", { type: "checkbox", "data-key": `draw-${fit.id}`, checked: drawn.has(fit.id), onchange: toggle, "aria-label": `Draw fit ${place + 1}` }), " ", el("span", { class: "swatch", style: `border-color:${colour(place)}` }), `Fit ${place + 1}`), fit.id === overview.best && el("div", {}, el("span", { class: "badge", title: `By ${overview.best_by}` }, "best"))),
+      el("td", {}, verdict || "–"),
       el("td", { class: "number" }, error(fit.held_out?.model.nrmse_percent), rival && el("div", { class: wins(fit) ? "worse" : "quiet" }, `${wins(fit) ? "worse than " : ""}${rival.name} ${error(rival.nrmse_percent)}`)),
       el("td", { class: "number" }, error(fit.nrmse_percent)),
       el("td", {}, options, el("div", { class: "quiet" }, `${fit.levels} levels`)),
@@ -117,7 +120,7 @@ export function show(overview, drawn, draw, changed) {
     by("fits"),
     el("div", { class: "card scroll", style: "margin-top:1rem" },
       el("table", {},
-        el("thead", {}, el("tr", {}, ...["Fit", "Error, held out", "Error, fitted", "Options", "Held out", "Advice", ""].map((text, n) => el("th", { scope: "col", class: n === 1 || n === 2 ? "number" : null }, text)))),
+        el("thead", {}, el("tr", {}, ...["Fit", "Verdict", "Error, held out", "Error, fitted", "Options", "Held out", "Advice", ""].map((text, n) => el("th", { scope: "col", class: n === 2 || n === 3 ? "number" : null }, text)))),
         el("tbody", {}, ...overview.fits.map(row)))),
     el("p", { class: "quiet" }, `Errors are RMSE in percent of the output's range. Below the error on what was held out stands that of the best simple predictor. Best is ${overview.best_by}.`),
   );

@@ -11,7 +11,8 @@
 //! - Run many actuators or many inputs at once with [`BatchModel`].
 //! - Compensate the hysteresis with [`Model::inverse`].
 //! - Measure the errors with [`evaluate`], and on samples that were not fitted with
-//!   [`fit_holding_out`], beside simple predictors ([`Rival`]).
+//!   [`fit_holding_out`], beside simple predictors ([`Rival`]). A [`Verdict`] says whether that is
+//!   good enough, and if not, why.
 //! - Where the plant changes, let the model learn: from a recording with [`adapt()`], or sample by
 //!   sample with [`Adaptive`].
 //! - Fit a model to each of many actuators with [`fit_fleet`].
@@ -44,6 +45,7 @@ mod recording;
 mod remedy;
 mod rivals;
 mod series;
+mod verdict;
 
 pub use adapt::{
     ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Adapted, Adaptive,
@@ -105,6 +107,7 @@ pub use series::{
     Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, range,
     remembered, usual_tolerance,
 };
+pub use verdict::{Basis, Cause, ErrorPart, Grade, PartKind, Verdict, Worst, error_parts};
 
 /// The README's code, run as a test.
 #[cfg(doctest)]

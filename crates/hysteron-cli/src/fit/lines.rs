@@ -21,9 +21,9 @@ pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> Stri
         ),
         format!(
             "RMSE {} ({:.2} % of the range), largest error {}",
-            text::with_unit(fit.rmse, &model.output),
+            model.output.text(fit.rmse),
             fit.nrmse_percent,
-            text::with_unit(fit.max_abs, &model.output),
+            model.output.text(fit.max_abs),
         ),
     ];
     lines.extend(
@@ -39,7 +39,7 @@ pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> Stri
     lines.extend(curve_line(model, args));
     lines.extend(start_line(fit));
     lines.extend(prior_line(fit));
-    lines.extend(text::confidence(fit, model));
+    lines.extend(fit.confidence.as_ref().map(text::sessions));
     lines.join("\n")
 }
 
@@ -90,7 +90,7 @@ fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
             true => String::new(),
             false => format!("recording {}, ", outlier.recording + 1),
         };
-        let by = text::with_unit(outlier.by, &model.output);
+        let by = model.output.text(outlier.by);
         format!("{recording}sample {} by {by}", outlier.sample + 1)
     });
     let named = named.collect::<Vec<_>>().join("; ");

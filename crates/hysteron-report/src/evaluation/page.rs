@@ -63,7 +63,7 @@ impl Subject for View<'_> {
     }
 
     fn above(&self) -> Markup {
-        html! { (facts(self)) (errors(self)) }
+        html! { (verdict(self)) (facts(self)) (errors(self)) }
     }
 
     fn below(&self) -> Markup {
@@ -74,6 +74,17 @@ impl Subject for View<'_> {
                  with each caption."
             }
         }
+    }
+}
+
+/// Whether the model is good enough, and if not, why.
+fn verdict(view: &View<'_>) -> Markup {
+    let lines = view.verdict.iter();
+    let lines = lines.flat_map(|verdict| verdict.lines(|setting| format!("--{}", setting.name)));
+    html! {
+        div.wide { table.facts.verdict { @for (heading, text) in lines {
+            tr { th scope="row" { (heading) } td { (text) } }
+        } } }
     }
 }
 

@@ -5,13 +5,15 @@ use crate::error::ReportError;
 use crate::evaluation::source::Source;
 use crate::quantity::Labelled;
 use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
-use hysteron::{Model, Origin, Recording};
+use hysteron::{Model, Origin, Recording, Verdict};
 use std::borrow::Cow;
 
 /// An evaluation, ready to be drawn.
 pub(crate) struct View<'a> {
     pub(crate) recording: &'a Recording,
     pub(crate) evaluation: &'a Evaluation,
+    /// `None` for a recording that no error can be told of.
+    pub(crate) verdict: Option<Verdict>,
     pub(crate) source: Source<'a>,
     pub(crate) input: Labelled,
     pub(crate) output: Labelled,
@@ -51,11 +53,13 @@ impl<'a> View<'a> {
                 found,
             });
         }
+        let verdict = Verdict::of_evaluation(model, recording, evaluation).ok();
         let source = Source::new(model);
         let (time, time_label) = clock(recording);
         Ok(Self {
             recording,
             evaluation,
+            verdict,
             source,
             input: Labelled::first([&recording.input_quantity, source.input()], "input"),
             output: Labelled::first([&recording.output_quantity, source.output()], "output"),

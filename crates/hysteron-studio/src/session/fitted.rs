@@ -18,6 +18,8 @@ pub(super) struct Fitted {
     pub(super) model: Arc<Model>,
     pub(super) held_out: Option<HeldOut>,
     pub(super) advice: Vec<String>,
+    /// Whether it is good enough: headings and sentences.
+    pub(super) verdict: Vec<(String, String)>,
     /// Lowest and highest input and output of the recordings fitted.
     pub(super) input: (f64, f64),
     pub(super) output: (f64, f64),
@@ -50,6 +52,8 @@ pub struct FitView {
     pub max_abs: f64,
     /// Errors over what was held out, of the model and of simple predictors.
     pub held_out: Option<HeldOut>,
+    /// Whether it is good enough: headings and sentences.
+    pub verdict: Vec<(String, String)>,
     /// What there is to know about the fit.
     pub advice: Vec<String>,
     /// Whether the model has an inverse.
@@ -82,6 +86,7 @@ impl Fitted {
             max_abs: fit.map_or(0.0, |fit| fit.max_abs),
             held_out: self.held_out.clone(),
             advice: self.advice.clone(),
+            verdict: self.verdict.clone(),
             inverse: model.inverse().is_ok(),
             timed: model.is_timed(),
             load: model.load.as_ref().map(hysteron::LoadDependence::range),

@@ -3,7 +3,9 @@
 use super::fault::{Fault, spelt};
 use super::fitted::Fitted;
 use super::id::Id;
-use hysteron::{Advice, Fit, HeldOut, HoldOut, Progress, Recording, advice, fit_holding_out};
+use hysteron::{
+    Advice, Fit, HeldOut, HoldOut, Progress, Recording, Verdict, advice, fit_holding_out,
+};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -146,6 +148,11 @@ impl Job {
                 (model, Some(held_out))
             }
         };
+        let verdict = Verdict::of_fit(&model, &self.recordings)?.lines(spelt);
+        let verdict = verdict
+            .into_iter()
+            .map(|(heading, text)| (heading.to_owned(), text));
+        let verdict = verdict.collect();
         let mut all: Vec<Advice> = advice(&model, &self.recordings)?;
         all.extend(held_out.iter().flat_map(HeldOut::advice));
         let advice = all
@@ -171,6 +178,7 @@ impl Job {
             model: Arc::new(model),
             held_out,
             advice,
+            verdict,
             courses: BTreeMap::new(),
             reached: None,
         })

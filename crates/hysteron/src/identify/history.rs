@@ -33,7 +33,7 @@ pub(crate) fn find_start(model: &Model, recording: &Recording) -> Result<(Fitted
     let beginning = beginning(&seen);
     let search = Search {
         model,
-        recording: &head(recording, beginning),
+        recording: &recording.part(0..beginning),
         first: model.plane().normalise(seen[0]),
         input: seen[0],
     };
@@ -66,17 +66,6 @@ pub(super) fn beginning(input: &[f64]) -> usize {
         most - least >= 0.9 * (high - low)
     };
     1 + input.iter().position(covers).unwrap_or(input.len() - 1)
-}
-
-pub(super) fn head(recording: &Recording, samples: usize) -> Recording {
-    let cut = |values: &Vec<f64>| values[..samples].to_vec();
-    Recording {
-        time: recording.time.as_ref().map(cut),
-        input: cut(&recording.input),
-        output: cut(&recording.output),
-        load: recording.load.as_ref().map(cut),
-        ..recording.clone()
-    }
 }
 
 /// The sum of the squared errors over a recording, from a state.

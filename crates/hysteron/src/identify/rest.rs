@@ -4,7 +4,7 @@
 //! all on. A second number is taken only where it explains clearly more.
 
 use crate::error::Result;
-use crate::identify::history::{beginning, head, squares};
+use crate::identify::history::{beginning, squares};
 use crate::identify::initial::Initial;
 use crate::model::{Model, State, Surroundings};
 use crate::recording::Recording;
@@ -112,7 +112,7 @@ pub(crate) fn find_rest(model: &Model, recording: &Recording) -> Result<(State, 
         Surroundings::from_recording(model, recording),
     )?;
     let samples = beginning(&seen);
-    let head = head(recording, samples);
+    let head = recording.part(0..samples);
     let error = |rest| squares(model, after(model, rest)?, &head);
     let (rest, _) = search(range(&seen), error)?;
     Ok((after(model, rest)?, samples))

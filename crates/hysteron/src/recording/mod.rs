@@ -54,6 +54,29 @@ impl Quantity {
         }
     }
 
+    /// A value with four significant digits and the unit, if that is known.
+    ///
+    /// ```
+    /// use hysteron::Quantity;
+    /// assert_eq!(Quantity::with_unit("lift", "mm").text(0.066774), "0.06677 mm");
+    /// assert_eq!(Quantity::named("force").text(120_000.0), "120000");
+    /// ```
+    #[must_use]
+    pub fn text(&self, value: f64) -> String {
+        let digits = match value == 0.0 || !value.is_finite() {
+            true => 0,
+            false => 3 - value.abs().log10().floor() as i32,
+        };
+        let number = match digits {
+            -2..=8 => format!("{value:.*}", digits.max(0) as usize),
+            _ => format!("{value:.3e}"),
+        };
+        match &self.unit {
+            Some(unit) => format!("{number} {unit}"),
+            None => number,
+        }
+    }
+
     /// Reads `temperature [degC]` and `temperature (degC)` as a name and its unit.
     ///
     /// ```

@@ -137,7 +137,7 @@ impl Recording {
     }
 
     /// Only these samples.
-    fn part(&self, samples: Range<usize>) -> Self {
+    pub(crate) fn part(&self, samples: Range<usize>) -> Self {
         self.picked(|series| series[samples.clone()].to_vec())
     }
 

@@ -48,5 +48,6 @@ mod timestamps;
 mod unknown_load;
 mod validation;
 mod vectors;
+mod verdict;
 mod weight_prior;
 mod wrong_readings;

@@ -1,0 +1,138 @@
+//! What is behind an error.
+
+use super::parts::{ErrorPart, PartKind, error_parts};
+use super::{Basis, OUTSIDE};
+use crate::evaluate::Evaluation;
+use crate::model::FitSummary;
+use crate::recording::Recording;
+
+/// Why a model is not better.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Cause {
+    /// Inputs are outside the plane.
+    Outside {
+        /// Their share of all inputs, from 0 to 1.
+        share: f64,
+    },
+    /// A few numbers explain much of the error.
+    Part(ErrorPart),
+    /// A simple predictor errs less.
+    Rival {
+        /// Its name.
+        name: String,
+        /// Its error, in percent.
+        percent: f64,
+    },
+    /// The error is that of the readings.
+    Noise {
+        /// Standard deviation of the noise, in the output's unit.
+        noise: f64,
+    },
+    /// The recording has few branches, so that many weights come from the prior.
+    FewBranches {
+        /// Their number.
+        branches: usize,
+    },
+    /// The model cannot follow what is more than noise.
+    Misfit {
+        /// The part of the error that is no noise, in the output's unit.
+        misfit: f64,
+        /// Standard deviation of the noise.
+        noise: f64,
+    },
+}
+
+/// A part of this share is worth a sentence.
+const WORTH: f64 = 0.25;
+/// From this share of noise on, in the squared error, noise is what is behind it.
+const NOISY: f64 = 0.5;
+/// Fewer inputs outside the plane are the noise at its ends.
+const SEEN: f64 = 0.01;
+/// Fewer branches than this do not fill a plane, whatever their error says.
+const FEW: usize = 6;
+
+impl Cause {
+    /// Their weights: what weighs less than these may go unsaid.
+    pub(super) const NOISE: f64 = 0.2;
+    pub(super) const MISFIT: f64 = 0.1;
+
+    /// One word for it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Outside { .. } => "outside",
+            Self::Part(part) => match part.kind {
+                PartKind::Offset => "offset",
+                PartKind::Gain => "gain",
+                PartKind::Shift => "shift",
+                PartKind::Late => "late",
+                PartKind::Drift => "drift",
+            },
+            Self::Rival { .. } => "rival",
+            Self::Noise { .. } => "noise",
+            Self::FewBranches { .. } => "few_branches",
+            Self::Misfit { .. } => "misfit",
+        }
+    }
+
+    /// The weightiest is told first, and its remedy is the next step.
+    pub(super) fn weight(&self) -> f64 {
+        match self {
+            Self::Outside { share } if *share > OUTSIDE => 3.0,
+            Self::Part(part) => 1.0 + part.share,
+            Self::Rival { .. } => 0.9,
+            Self::FewBranches { .. } => 0.8,
+            Self::Outside { share } if *share > SEEN => 0.3,
+            Self::Noise { .. } => Self::NOISE,
+            Self::Misfit { .. } => Self::MISFIT,
+            Self::Outside { .. } => 0.0,
+        }
+    }
+}
+
+/// What the record of a fit says.
+pub(super) fn of_record(fit: &FitSummary, basis: Basis) -> Vec<Cause> {
+    let mut causes = Vec::new();
+    let (_, _, percent, rival) = super::tested(fit);
+    if let (Some((name, rival)), Some(percent)) = (rival, percent)
+        && rival < percent
+    {
+        let percent = rival;
+        causes.push(Cause::Rival { name, percent });
+    }
+    if let Some(confidence) = &fit.confidence
+        && confidence.branches < FEW
+        && basis != Basis::HeldOut
+    {
+        let branches = confidence.branches;
+        causes.push(Cause::FewBranches { branches });
+    }
+    causes
+}
+
+/// The inputs of an evaluation that the model does not know.
+pub(super) fn outside(evaluation: &Evaluation) -> Option<Cause> {
+    let samples = evaluation.forward.samples.max(1);
+    let share = evaluation.clipped as f64 / samples as f64;
+    (share > 0.0).then_some(Cause::Outside { share })
+}
+
+/// Noise, or what the model cannot follow, whichever is more of an error `rmse`; `None` where the
+/// noise is not known.
+pub(super) fn of_noise(noise: f64, rmse: f64) -> Option<Cause> {
+    let misfit = (rmse * rmse - noise * noise).max(0.0).sqrt();
+    (noise > 0.0).then_some(match noise * noise > NOISY * rmse * rmse {
+        true => Cause::Noise { noise },
+        false => Cause::Misfit { misfit, noise },
+    })
+}
+
+/// The parts that are worth a sentence. A fit has found offset, gain and shift already.
+pub(super) fn of_parts(recordings: &[Recording], modelled: &[f64], fitted: bool) -> Vec<Cause> {
+    let parts = error_parts(recordings, modelled).into_iter();
+    let is_open =
+        |part: &ErrorPart| !fitted || matches!(part.kind, PartKind::Late | PartKind::Drift);
+    let worth = parts.filter(|part| part.share >= WORTH && is_open(part));
+    worth.map(Cause::Part).collect()
+}

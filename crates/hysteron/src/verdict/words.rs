@@ -1,0 +1,226 @@
+//! A verdict in sentences.
+
+use super::parts::{ErrorPart, PartKind};
+use super::{Basis, Cause, Grade, OUTSIDE, Verdict};
+use crate::recording::Quantity;
+use crate::remedy::{Remedy, Setting};
+use std::fmt;
+
+/// No session changes a gain so much: another unit or another device does.
+fn is_odd(gain: &ErrorPart) -> bool {
+    !(-0.6..=1.5).contains(&gain.size)
+}
+
+impl Grade {
+    /// The word, and what the model is good for.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Good => "good: its inverse can drive without a sensor",
+            Self::Usable => "usable: drive by it beside a controller that measures the output",
+            Self::Poor => "poor: do not drive by it yet",
+            Self::Untested => "not tested: nothing was left out of the fit",
+        }
+    }
+}
+
+impl Verdict {
+    /// What is to be said, each with its heading: `verdict`, `error`, `inverse`, `why`, `worst` and
+    /// `next`, as far as there is something. An option is written by `spelling`.
+    pub fn lines(&self, spelling: impl Fn(&Setting) -> String) -> Vec<(&'static str, String)> {
+        let mut lines = vec![
+            ("verdict", self.grade.words().to_owned()),
+            ("error", self.error()),
+        ];
+        if let Some(inverse) = &self.inverse {
+            let percent = inverse.nrmse_percent;
+            let percent = percent.map_or(String::new(), |p| format!(" ({p:.2} % of its range)"));
+            let rmse = self.input.text(inverse.rmse);
+            let text = format!(
+                "{} to {rmse}{percent} while the output moves",
+                self.input.name
+            );
+            lines.push(("inverse", text));
+        }
+        // Nobody asks why a good model is not better, unless the readings are.
+        let least = match self.grade {
+            Grade::Good => Cause::NOISE,
+            _ => Cause::MISFIT,
+        };
+        let alone = self.causes.len() == 1;
+        let is_said = |cause: &&Cause| match cause {
+            Cause::Misfit { .. } => alone && least <= Cause::MISFIT,
+            cause => cause.weight() >= least,
+        };
+        let causes = self.causes.iter().filter(is_said);
+        let causes = causes.map(|cause| self.sentence(cause));
+        lines.extend(causes.map(|sentence| ("why", sentence)));
+        lines.extend(self.worst().map(|text| ("worst", text)));
+        lines.push(("next", self.next().spelt(spelling)));
+        lines
+    }
+
+    /// The error, on what, and beside it the best simple predictor.
+    fn error(&self) -> String {
+        let on = match self.basis {
+            Basis::OtherRecording => "a recording that was not fitted",
+            Basis::HeldOut => "what was held out",
+            Basis::BranchesLeftOut => "branches left out",
+            Basis::PartsLeftOut => "parts of branches left out",
+            Basis::Fitted => "the data fitted",
+        };
+        let percent = self.percent;
+        let percent = percent.map_or(String::new(), |p| format!(" ({p:.2} % of the range)"));
+        let rmse = self.output.text(self.rmse);
+        let rival = self
+            .rival
+            .as_ref()
+            .map(|(name, rival)| format!("; {name} errs {rival:.2} %"));
+        format!("{rmse}{percent} on {on}{}", rival.unwrap_or_default())
+    }
+
+    /// A cause in words.
+    #[must_use]
+    pub fn sentence(&self, cause: &Cause) -> String {
+        match cause {
+            Cause::Outside { share } => format!(
+                "{:.1} % of the inputs are outside the range that the model knows",
+                100.0 * share
+            ),
+            Cause::Rival { name, percent } => format!(
+                "{name} errs less ({percent:.2} %): the data do not determine the model, or it \
+                 cannot follow them"
+            ),
+            Cause::Noise { noise } => format!(
+                "mostly noise of the readings ({}): a better model cannot help",
+                self.output.text(*noise)
+            ),
+            Cause::FewBranches { branches } => {
+                format!("only {branches} branches were recorded: what other paths do is a guess")
+            }
+            Cause::Misfit { misfit, noise } => format!(
+                "{} of it are the model's, not noise ({})",
+                self.output.text(*misfit),
+                self.output.text(*noise)
+            ),
+            Cause::Part(part) => {
+                let share = format!("{:.0} % of the squared error is", 100.0 * part.share);
+                match part.kind {
+                    PartKind::Offset => format!(
+                        "{share} a constant offset of {}: another zero or session",
+                        self.output.text(part.size)
+                    ),
+                    PartKind::Gain if is_odd(part) => format!(
+                        "{share} a gain: the output moves {} times as far",
+                        Quantity::default().text(1.0 + part.size)
+                    ),
+                    PartKind::Gain => format!(
+                        "{share} a gain: the output moves {:.1} % {} than the model's",
+                        100.0 * part.size.abs(),
+                        if part.size < 0.0 { "less" } else { "more" }
+                    ),
+                    PartKind::Shift => format!(
+                        "{share} a shift of {} by {}",
+                        self.input.name,
+                        self.input.text(part.size)
+                    ),
+                    PartKind::Late => format!(
+                        "{share} a delay: the output comes {:.1} samples {} than the model's",
+                        part.size.abs(),
+                        if part.size < 0.0 { "earlier" } else { "later" }
+                    ),
+                    PartKind::Drift => format!(
+                        "{share} a drift of {} from the first to the last sample",
+                        self.output.text(part.size)
+                    ),
+                }
+            }
+        }
+    }
+
+    fn worst(&self) -> Option<String> {
+        let worst = self.worst?;
+        let recording = match worst.recording {
+            0 => String::new(),
+            number => format!("recording {}, ", number + 1),
+        };
+        let time = worst
+            .time
+            .map(|time| format!(" at {} s", (time * 1e6).round() / 1e6));
+        Some(format!(
+            "{recording}sample {}{}: {} {}, {} {} measured, {} modelled",
+            worst.sample + 1,
+            time.unwrap_or_default(),
+            self.input.name,
+            self.input.text(worst.input),
+            self.output.name,
+            self.output.text(worst.measured),
+            self.output.text(worst.modelled),
+        ))
+    }
+
+    /// What to do next.
+    #[must_use]
+    pub fn next(&self) -> Remedy {
+        let weightiest = self.causes.first();
+        let is_good = self.grade == Grade::Good;
+        match weightiest {
+            _ if self.basis == Basis::Fitted && self.grade == Grade::Untested => Remedy::new(
+                "evaluate it on another recording, or hold a part out of the fit with {}",
+                [Setting::any("hold-out")],
+            ),
+            _ if is_good && self.basis != Basis::OtherRecording => Remedy::new(
+                "evaluate it on another recording: the same actuator on another day may differ",
+                [],
+            ),
+            _ if is_good => Remedy::new("take it home: invert, control, export", []),
+            Some(Cause::Outside { share }) if *share > OUTSIDE => Remedy::new(
+                "fit a recording that covers this range, or check the unit of the input",
+                [],
+            ),
+            Some(Cause::Part(part)) => match part.kind {
+                PartKind::Gain if is_odd(part) => Remedy::new(
+                    "check the unit of the output, and whose recording this is",
+                    [],
+                ),
+                PartKind::Offset | PartKind::Gain | PartKind::Shift => Remedy::new(
+                    "adapt the model to this session (adapt), and compare again",
+                    [],
+                ),
+                PartKind::Late => Remedy::new(
+                    "name the time and let the fit look for dynamics: {}, {}, {} for a drive that \
+                     heats",
+                    [
+                        Setting::any("time"),
+                        Setting::word("dynamics", "auto"),
+                        Setting::on("thermal"),
+                    ],
+                ),
+                PartKind::Drift => Remedy::new(
+                    "let the specimen settle before you record, or adapt on line (adapt)",
+                    [],
+                ),
+            },
+            Some(Cause::Noise { .. }) => Remedy::new(
+                "average the readings, or use {}, which is kept where it helps",
+                [Setting::on("prepare")],
+            ),
+            _ => Remedy::new(
+                "record more reversals inside the range (design makes such an input), or name what \
+                 else moves the output: {}, {}",
+                [Setting::any("load"), Setting::any("time")],
+            ),
+        }
+    }
+}
+
+/// The sentences, a line each. Options are shown by name.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines = self.lines(|setting| format!("`{}`", setting.name.replace('-', " ")));
+        let lines = lines
+            .iter()
+            .map(|(heading, text)| format!("{heading}: {text}"));
+        f.write_str(&lines.collect::<Vec<_>>().join("\n"))
+    }
+}

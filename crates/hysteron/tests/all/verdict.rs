@@ -1,0 +1,225 @@
+//! The verdict on a model: faults of a known kind are named, and grades follow the error.
+
+use hysteron::{
+    Basis, Cause, Evaluation, Fit, Grade, HoldOut, Model, Operator, PartKind, Plane, Recording,
+    Sign, Verdict, error_parts, evaluate, fit_holding_out, forward,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// An input of decreasing loops over 20 to 80, and more of them.
+fn input(samples: usize) -> Vec<f64> {
+    let wave = |n: usize| {
+        let t = n as f64 / samples as f64;
+        50.0 - 30.0 * (1.0 - 0.6 * t) * (t * 44.0).cos()
+    };
+    (0..samples).map(wave).collect()
+}
+
+/// Weights of a model with 12 levels, each from 0 to 1.
+fn model(weights: &[f64]) -> Model {
+    let plane = Plane::new(20.0, 80.0, 12).unwrap();
+    Model::new(Operator::Mkp, plane, weights.to_vec(), 3.0, Sign::Positive).unwrap()
+}
+
+fn recording(model: &Model, change: impl Fn(usize, f64) -> f64) -> Recording {
+    let input = input(900);
+    let output = model.simulate(&input).unwrap();
+    let output = output
+        .iter()
+        .enumerate()
+        .map(|(n, y)| change(n, *y))
+        .collect();
+    Recording::new(input, output).unwrap()
+}
+
+fn judged(model: &Model, recording: &Recording) -> (Verdict, Evaluation) {
+    let evaluation = evaluate(model, recording).unwrap();
+    (
+        Verdict::of_evaluation(model, recording, &evaluation).unwrap(),
+        evaluation,
+    )
+}
+
+/// Random weights around one pair of levels, and none elsewhere: as a shape-memory alloy, it has
+/// plateaus beside the steep branches. Where the slope is the same everywhere, a shift of the input
+/// cannot be told from an offset of the output.
+fn weights(rng: &mut ChaCha8Rng) -> Vec<f64> {
+    let cells = (1..=12).flat_map(|j| (1..=j).map(move |i| (i, j)));
+    let is_near = |(i, j): (i32, i32)| (i - 5).abs() <= 1 && (j - 7).abs() <= 1;
+    let mut weight = |cell| {
+        if is_near(cell) {
+            rng.random_range(0.1..1.0)
+        } else {
+            0.0
+        }
+    };
+    cells.map(&mut weight).collect()
+}
+
+/// One fault at a time, from 3 % of the range on: it explains the error.
+#[test]
+fn a_fault_is_named() {
+    for seed in 0..240 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = model(&weights(&mut rng));
+        let clean = recording(&model, |_, y| y);
+        let (_, (low, high)) = clean.ranges();
+        let size = rng.random_range(0.03..0.3) * if rng.random() { 1.0 } else { -1.0 };
+        let error = size * (high - low);
+        let (kind, told, found) = match seed % 5 {
+            0 => (PartKind::Offset, error, recording(&model, |_, y| y + error)),
+            1 => (
+                PartKind::Gain,
+                size,
+                recording(&model, |_, y| y * (1.0 + size)),
+            ),
+            2 => {
+                // The sensor of the input reads more by 2 % of its range.
+                let shift = 1.2_f64.copysign(size);
+                let input = clean.input.iter().map(|x| x + shift).collect();
+                let moved = Recording::new(input, clean.output.clone()).unwrap();
+                (PartKind::Shift, shift, moved)
+            }
+            3 => {
+                let late = 3;
+                let of = |n: usize, _| clean.output[n.saturating_sub(late)];
+                (PartKind::Late, late as f64, recording(&model, of))
+            }
+            _ => {
+                let drift = |n: usize, y: f64| y + error * n as f64 / 899.0;
+                (PartKind::Drift, error, recording(&model, drift))
+            }
+        };
+        let output = model.simulate(&found.input).unwrap();
+        let [first, ..] = error_parts(&found, &output);
+        assert_eq!(first.kind, kind, "seed {seed}");
+        // Slopes are those between samples, and an input outside the plane moves nothing.
+        let (least, near) = match kind {
+            PartKind::Shift | PartKind::Late => (0.5, 0.5),
+            _ => (1.0 - 1e-9, 1e-6),
+        };
+        assert!(first.share >= least, "seed {seed}: {first:?}");
+        let miss = (first.size - told).abs();
+        assert!(
+            miss <= near * told.abs(),
+            "seed {seed}: {first:?}, told {told}"
+        );
+        let (verdict, _) = judged(&model, &found);
+        let is_named = |cause: &Cause| matches!(cause, Cause::Part(part) if part.kind == kind);
+        assert!(
+            verdict.causes.iter().any(is_named),
+            "seed {seed}: {:?}",
+            verdict.causes
+        );
+    }
+}
+
+/// Shares are shares, and no recording of numbers makes the verdict fail.
+#[test]
+fn any_recording_gets_a_verdict() {
+    for seed in 0..400 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = model(&weights(&mut rng));
+        let samples = rng.random_range(1..40);
+        let exponent = rng.random_range(-12..60);
+        let scale = 10.0_f64.powi(exponent);
+        let input = (0..samples).map(|_| rng.random_range(-1e6..1e6)).collect();
+        let output = (0..samples)
+            .map(|_| scale * rng.random_range(-1.0..1.0))
+            .collect();
+        let recording = Recording::new(input, output).unwrap();
+        let (verdict, evaluation) = judged(&model, &recording);
+        let parts = error_parts(&recording, &evaluation.output_model);
+        let sum: f64 = parts.iter().map(|part| part.share).sum();
+        assert!((0.0..=1.0 + 1e-6).contains(&sum), "seed {seed}: {parts:?}");
+        assert!(
+            parts.iter().all(|part| part.size.is_finite()),
+            "seed {seed}: {parts:?}"
+        );
+        let worst = verdict.worst.unwrap();
+        assert_eq!(
+            (worst.measured - worst.modelled).abs(),
+            evaluation.forward.max_abs
+        );
+        assert!(!verdict.to_string().contains("NaN"));
+    }
+}
+
+#[test]
+fn grades_follow_the_error_on_what_was_not_fitted() {
+    let model = model(&[0.5; 78]);
+    let graded = |error: f64| {
+        let square = |n: usize| if n % 200 < 100 { 1.0 } else { -1.0 };
+        let found = recording(&model, |n, y| y + error * square(n));
+        let (_, (low, high)) = found.ranges();
+        let (verdict, _) = judged(&model, &found);
+        (verdict.grade, 100.0 * error / (high - low))
+    };
+    // The output moves by 39.
+    for (error, grade) in [(0.2, Grade::Good), (1.0, Grade::Usable), (4.0, Grade::Poor)] {
+        let (found, percent) = graded(error);
+        assert_eq!(found, grade, "{percent} %");
+    }
+}
+
+/// On what was fitted, a small error is no promise; a straight line that is better says enough.
+#[test]
+fn what_was_fitted_is_not_tested_and_a_rival_costs_a_grade() {
+    let plain = Fit::from(hysteron::FitOptions::plain())
+        .levels(12)
+        .smooth(hysteron::Smooth::NONE);
+    let plant = model(&[0.5; 78]);
+    let whole = recording(&plant, |_, y| y);
+    let fitted = plain.run(&whole).unwrap();
+    let verdict = Verdict::of_fit(&fitted, &whole).unwrap();
+    assert_eq!(
+        (verdict.grade, verdict.basis),
+        (Grade::Untested, Basis::Fitted)
+    );
+    let (tested, _) = fit_holding_out(&plain, &whole, &HoldOut::Branches(0.2)).unwrap();
+    let verdict = Verdict::of_fit(&tested, &whole).unwrap();
+    assert_eq!(
+        (verdict.grade, verdict.basis),
+        (Grade::Good, Basis::HeldOut)
+    );
+    // A plant without hysteresis, slightly off the model's play: a line is better.
+    let line = Recording::new(input(900), input(900)).unwrap();
+    let run = forward(&fitted, &line, hysteron::Start::Fitted).unwrap();
+    let verdict = Verdict::of_forward(&line, &run).unwrap();
+    let (_, rival) = verdict.rival.clone().unwrap();
+    assert!(rival < verdict.percent.unwrap());
+    assert_eq!(verdict.grade, Grade::Poor);
+}
+
+/// Inputs that the model does not know come first, whatever the error says.
+#[test]
+fn a_recording_outside_the_plane_is_poor() {
+    let model = model(&[0.5; 78]);
+    let kelvin: Vec<f64> = input(900).iter().map(|x| x + 273.15).collect();
+    let output = model.simulate(&kelvin).unwrap();
+    let (verdict, _) = judged(&model, &Recording::new(kelvin, output).unwrap());
+    assert_eq!(verdict.grade, Grade::Poor);
+    assert!(matches!(verdict.causes[0], Cause::Outside { share } if share == 1.0));
+    assert!(verdict.next().to_string().contains("unit of the input"));
+}
+
+/// Noise that explains the error is named, and the model is not blamed for it.
+#[test]
+fn noise_is_told_from_misfit() {
+    let model = model(&[0.5; 78]);
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut noisy = recording(&model, |_, y| y);
+    noisy
+        .output
+        .iter_mut()
+        .for_each(|y| *y += rng.random_range(-1.5..1.5));
+    let (verdict, _) = judged(&model, &noisy);
+    assert!(
+        matches!(verdict.causes[0], Cause::Noise { .. }),
+        "{:?}",
+        verdict.causes
+    );
+    assert_eq!(verdict.grade, Grade::Good);
+    assert!(verdict.percent.unwrap() > 1.0);
+}
