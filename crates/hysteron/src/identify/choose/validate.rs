@@ -71,8 +71,7 @@ impl Candidates {
 /// recordings are unknown, only two patterns of starts are tried: all off and all on.
 ///
 /// A candidate that errs clearly more than the best one with as many levels, on half of the folds,
-/// is not tried on the others, and is not in the record. The neighbours in the search for the
-/// smoothness are all eight with the fewest levels, and those on the axes with more.
+/// is not tried on the others, and is not in the record.
 ///
 /// For one given number of levels above 40, with more than 900 columns, the search for the
 /// smoothness begins with 40 levels, where a candidate takes little time.
@@ -197,8 +196,6 @@ pub(super) fn choose(
         }
         let level = Level::new(problem, sign, &folds, progress)?;
         let found = search.rate(&level, levels)?;
-        // The bottom moves little from one number of levels to the next.
-        search.near = &ALONG_AXES;
         let values = found.iter().map(|score| criterion.value(score));
         let value = values.fold(f64::INFINITY, f64::min);
         scores.extend(found);
