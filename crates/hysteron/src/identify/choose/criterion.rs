@@ -32,32 +32,6 @@ struct Fold {
 /// solution of all samples. Zeros are a start too.
 pub(super) type Starts = Vec<Vec<f64>>;
 
-/// A candidate that errs more than the best one by this factor, on half of the folds, is given up.
-/// The folds take every so many branches, so their halves are alike.
-const LOST: f64 = 1.05;
-
-/// The squared errors of the best candidate so far, on each fold. A candidate that is clearly worse
-/// on half of them is not tried on the others (racing: Maron and Moore 1994).
-#[derive(Default)]
-pub(super) struct Race {
-    best: Vec<f64>,
-}
-
-impl Race {
-    /// Whether a candidate with these squares on the folds with even numbers is out.
-    fn is_lost(&self, squares: &[f64]) -> bool {
-        let of_half = |squares: &[f64]| squares.iter().step_by(2).sum::<f64>();
-        !self.best.is_empty() && of_half(squares) > LOST * LOST * of_half(&self.best)
-    }
-
-    fn enter(&mut self, squares: Vec<f64>) {
-        let sum = |squares: &[f64]| squares.iter().sum::<f64>();
-        if self.best.is_empty() || sum(&squares) < sum(&self.best) {
-            self.best = squares;
-        }
-    }
-}
-
 impl<'a> Level<'a> {
     pub(super) fn new(
         problem: Problem<'a>,
@@ -98,43 +72,24 @@ impl<'a> Level<'a> {
 
     /// Root mean squared error over all samples, each from a fit without its fold.
     pub(super) fn left_out_rmse(&self, smooth: Smooth, starts: &mut Starts) -> Result<f64> {
-        let alone = self.raced(smooth, starts, &mut Race::default())?;
-        Ok(alone.unwrap_or(f64::INFINITY))
-    }
-
-    /// The same beside the best candidate so far; `None` for one that was given up half way.
-    pub(super) fn raced(
-        &self,
-        smooth: Smooth,
-        starts: &mut Starts,
-        race: &mut Race,
-    ) -> Result<Option<f64>> {
         let solver = self.problem.options.solver;
-        let mut squares = vec![0.0; self.folds.len()];
-        for half in 0..2 {
-            let own: Vec<usize> = (half..self.folds.len()).step_by(2).collect();
-            let before = &*starts;
-            let solved = parallel::map(own.len(), |k| {
-                self.progress.tell("choice of levels", f64::NAN)?;
-                let Fold { own: fold, rest } = &self.folds[own[k]];
-                let penalised = rest.penalised(self.prior(smooth), &self.problem);
-                let at = rest.solve(&penalised, solver, &before[own[k]], Progress::NONE)?;
-                Ok((fold.error(&at), at.x))
-            })?;
-            for (n, (error, x)) in own.into_iter().zip(solved) {
-                squares[n] = error;
-                // Without smoothness most weights are zero. Then zero is a better starting point.
-                if !smooth.is_none() {
-                    starts[n] = x;
-                }
-            }
-            if half == 0 && race.is_lost(&squares) {
-                return Ok(None);
+        let before = &*starts;
+        let solved = parallel::map(self.folds.len(), |n| {
+            self.progress.tell("choice of levels", f64::NAN)?;
+            let Fold { own, rest } = &self.folds[n];
+            let penalised = rest.penalised(self.prior(smooth), &self.problem);
+            let at = rest.solve(&penalised, solver, &before[n], Progress::NONE)?;
+            Ok((own.error(&at), at.x))
+        })?;
+        let mut squares = 0.0;
+        for (start, (error, x)) in starts.iter_mut().zip(solved) {
+            squares += error;
+            // Without smoothness most weights are zero. Then zero is a better starting point.
+            if !smooth.is_none() {
+                *start = x;
             }
         }
-        let sum: f64 = squares.iter().sum();
-        race.enter(squares);
-        Ok(Some((sum / self.whole.samples).sqrt()))
+        Ok((squares / self.whole.samples).sqrt())
     }
 
     /// The logarithm of the evidence, without constants: how probable the outputs are, whatever the
@@ -180,27 +135,5 @@ impl<'a> Level<'a> {
             squares += fold.own.error(&at);
         }
         Ok((squares / self.whole.samples).sqrt())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_candidate_is_given_up_only_where_it_is_clearly_worse() {
-        let mut race = Race::default();
-        assert!(
-            !race.is_lost(&[9.0, 0.0, 9.0, 0.0]),
-            "the first has no rival"
-        );
-        race.enter(vec![1.0, 2.0, 1.0, 2.0]);
-        race.enter(vec![5.0, 5.0, 5.0, 5.0]);
-        // Twice LOST², on the two folds with even numbers.
-        for (share, lost) in [(0.5, false), (1.0, false), (1.04, false), (1.06, true)] {
-            let squares = share * share;
-            let on_half = [squares, 0.0, squares, 0.0];
-            assert_eq!(race.is_lost(&on_half), lost, "{share} of the best error");
-        }
     }
 }

@@ -45,9 +45,8 @@ pub(super) fn smooth_at(place: Point) -> Smooth {
 }
 
 /// Walks to a place where no neighbour has a smaller `value`, from the best of `from` (a coarse
-/// grid, if that is empty). `steps` lead to the neighbours, those on the axes first. A diagonal
-/// between two that were given up (`value` infinite) is not looked at. Returns the values of all
-/// places it looked at.
+/// grid, if that is empty). `steps` lead to the neighbours. Returns the values of all places it
+/// looked at.
 pub(super) fn walk(
     from: &[Point],
     steps: &[Step],
@@ -67,26 +66,21 @@ pub(super) fn walk(
         let Some(best) = best(&known) else {
             return Ok(known);
         };
-        let near = |a: isize, c: isize| {
+        let near = |&(a, c): &Step| {
             let a = best.0.checked_add_signed(a)?;
             let c = best.1.checked_add_signed(c)?;
             (a <= along && c <= across).then_some((a, c))
         };
-        let mut found_new = false;
-        for &(a, c) in steps {
-            let Some(place) = near(a, c).filter(|place| !known.contains_key(place)) else {
-                continue;
-            };
-            let given_up =
-                |a, c| near(a, c).is_some_and(|at| known.get(&at) == Some(&f64::INFINITY));
-            if a != 0 && c != 0 && given_up(a, 0) && given_up(0, c) {
-                continue;
-            }
-            known.insert(place, value(place)?);
-            found_new = true;
-        }
-        if !found_new {
+        let new: Vec<Point> = steps
+            .iter()
+            .filter_map(near)
+            .filter(|place| !known.contains_key(place))
+            .collect();
+        if new.is_empty() {
             return Ok(known);
+        }
+        for place in new {
+            known.insert(place, value(place)?);
         }
     }
 }

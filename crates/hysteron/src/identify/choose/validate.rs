@@ -5,7 +5,7 @@
 //! about each other. Then the evidence of the prior decides, which needs nothing left out.
 
 use crate::error::Result;
-use crate::identify::choose::criterion::{Level, Race};
+use crate::identify::choose::criterion::Level;
 use crate::identify::choose::rivals;
 use crate::identify::choose::search::{ALONG_AXES, AROUND, Point, Step, best, smooth_at, walk};
 use crate::identify::choose::seen::Seen;
@@ -69,9 +69,6 @@ impl Candidates {
 /// evidence, see [`Criterion`]. At least 28 levels are tried, and more until two numbers in a row
 /// have not been better by 1 % (by 1 in the logarithm of the evidence). If the starts of several
 /// recordings are unknown, only two patterns of starts are tried: all off and all on.
-///
-/// A candidate that errs clearly more than the best one with as many levels, on half of the folds,
-/// is not tried on the others, and is not in the record.
 ///
 /// For one given number of levels above 40, with more than 900 columns, the search for the
 /// smoothness begins with 40 levels, where a candidate takes little time.
@@ -239,7 +236,6 @@ impl Search {
     fn rate(&mut self, level: &Level<'_>, levels: usize) -> Result<Vec<Score>> {
         let mut starts = level.starts();
         let mut scores = Vec::new();
-        let mut race = Race::default();
         let mut rate = |smooth: Smooth| -> Result<f64> {
             let mut score = Score {
                 levels,
@@ -249,10 +245,7 @@ impl Search {
             };
             match self.criterion {
                 Criterion::LeftOut => {
-                    let Some(rmse) = level.raced(smooth, &mut starts, &mut race)? else {
-                        return Ok(f64::INFINITY);
-                    };
-                    score.rmse = rmse;
+                    score.rmse = level.left_out_rmse(smooth, &mut starts)?;
                 }
                 Criterion::Evidence => {
                     score.log_evidence = Some(level.log_evidence(smooth, &mut starts)?);
