@@ -6,6 +6,8 @@
 
 mod entry;
 mod methods;
+mod pairs;
+mod plays;
 mod prandtl;
 mod splits;
 
@@ -17,8 +19,11 @@ use splits::{Set, Split};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Why a simple method wins in a row, where that was found out.
+/// Why another method wins in a row, where that was found out.
 const REASONS: &str = include_str!("text/leaderboard-reasons.txt");
+
+/// A method that errs less than ours by this share wins clearly, and the page says why.
+const CLEAR: f64 = 0.02;
 
 #[derive(Default)]
 struct Arguments {
@@ -56,7 +61,12 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         return entry::write(&sets, folder);
     }
     print!("{}", include_str!("text/leaderboard.md"));
-    table(&sets, &arguments.entries)
+    table(&sets, &arguments.entries)?;
+    if arguments.only.is_none() {
+        print!("{}", include_str!("text/leaderboard-pairs.md"));
+        pairs::table(&folder)?;
+    }
+    Ok(())
 }
 
 /// The errors of one method in one row.
@@ -91,14 +101,14 @@ fn table(sets: &[Set], entries: &[Entry]) -> Result<()> {
             .map(|s| s.percent)
             .fold(f64::INFINITY, f64::min);
         let ours = scores[0].map_or(f64::INFINITY, |score| score.percent);
-        let simple = Method::ALL
+        let others = Method::ALL
             .iter()
             .zip(&scores)
-            .filter(|(method, _)| method.is_simple());
-        let simple = simple.filter_map(|(method, score)| Some((method.name(), (*score)?.percent)));
-        let winner = simple
+            .filter(|(method, _)| !method.is_same_optimum());
+        let others = others.filter_map(|(method, score)| Some((method.name(), (*score)?.percent)));
+        let winner = others
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .filter(|w| w.1 < ours);
+            .filter(|w| w.1 < (1.0 - CLEAR) * ours);
         let cell = |score: &Option<Score>| match score {
             None => "–".to_owned(),
             Some(score) if score.percent <= best => format!("**{}**", number(score.percent)),
@@ -128,7 +138,7 @@ fn table(sets: &[Set], entries: &[Entry]) -> Result<()> {
         }
     }
     units.iter().for_each(|row| println!("{row}"));
-    println!("\n## Where a simple method wins\n");
+    println!("\n## Where another method wins\n");
     match marked.is_empty() {
         true => println!("Nowhere."),
         false => println!("{}", marked.join("\n")),

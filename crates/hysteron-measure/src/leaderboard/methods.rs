@@ -1,10 +1,12 @@
 //! The methods of the leaderboard. Each sees what was fitted, and the input and load of the test.
 
+use super::plays::RidgeOnPlays;
 use super::prandtl::{PrandtlIshlinskii, Shape};
 use super::splits::Split;
 use crate::result::Result;
 use crate::scipy;
 use hysteron::{Fit, FitOptions, Operator, Recording, Rival, RivalKind, Surroundings, plane_of};
+use std::slice;
 
 /// Levels of the fits with a fixed number, and plays of the Prandtl-Ishlinskii models.
 const LEVELS: usize = 20;
@@ -19,18 +21,20 @@ pub enum Method {
     Fixed,
     Relay(usize),
     Prandtl(Shape),
+    Plays,
     SciPy,
     Rival(RivalKind),
 }
 
 impl Method {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Ours,
         Self::Fixed,
         Self::Relay(LEVELS),
         Self::Relay(MANY),
         Self::Prandtl(Shape::Plain),
         Self::Prandtl(Shape::TwoSided),
+        Self::Plays,
         Self::SciPy,
         Self::Rival(RivalKind::Line),
         Self::Rival(RivalKind::MeanCurve),
@@ -46,27 +50,38 @@ impl Method {
             Self::Relay(levels) => format!("relay {levels}"),
             Self::Prandtl(Shape::Plain) => "PI".into(),
             Self::Prandtl(Shape::TwoSided) => "PI two-sided".into(),
+            Self::Plays => "ridge on plays".into(),
             Self::SciPy => "SciPy".into(),
             Self::Rival(kind) => kind.name().into(),
         }
     }
 
-    /// Whether the method has no operators. Where it wins, a model has failed.
-    pub fn is_simple(self) -> bool {
-        matches!(self, Self::Rival(_))
+    /// Whether the method may beat ours without notice: it is a fit of ours done elsewhere.
+    pub fn is_same_optimum(self) -> bool {
+        matches!(self, Self::SciPy)
     }
 
     /// The output at every sample of the test; `None` where the method cannot be used.
     pub fn predict(self, split: &Split) -> Result<Option<Vec<f64>>> {
         match self {
-            Self::Ours => fitted(&Fit::new(), split).map(Some),
+            Self::Prandtl(_) | Self::Plays | Self::SciPy => between_loads(self, split),
+            _ => self.fit(&split.training)?(&split.test),
+        }
+    }
+
+    /// What predicts after a fit to these recordings. The methods that know no load take one
+    /// recording.
+    pub fn fit(self, training: &[Recording]) -> Result<Predictor> {
+        let first = training.first().ok_or("nothing to fit")?;
+        Ok(match self {
+            Self::Ours => fitted(&Fit::new(), training)?,
             Self::Fixed => {
                 let options = FitOptions {
                     levels: LEVELS,
                     ridge: 0.0,
                     ..FitOptions::plain()
                 };
-                fitted(&options.into(), split).map(Some)
+                fitted(&options.into(), training)?
             }
             Self::Relay(levels) => {
                 let options = FitOptions {
@@ -74,51 +89,60 @@ impl Method {
                     levels,
                     ..FitOptions::plain()
                 };
-                fitted(&options.into(), split).map(Some)
+                fitted(&options.into(), training)?
             }
-            Self::Prandtl(shape) => between_loads(split, |training, input| {
-                let model = PrandtlIshlinskii::fit(training, shape, LEVELS);
-                Ok(Some(model.predict(input)))
-            }),
-            Self::SciPy => between_loads(split, |training, input| {
-                scipy::predict(training, plane_of(training, LEVELS)?, input)
-            }),
+            Self::Prandtl(shape) => {
+                let model = PrandtlIshlinskii::fit(first, shape, LEVELS);
+                Box::new(move |test| Ok(Some(model.predict(&test.input))))
+            }
+            Self::Plays => {
+                let model = RidgeOnPlays::fit(first)?;
+                Box::new(move |test| Ok(Some(model.predict(&test.input))))
+            }
+            Self::SciPy => {
+                let training = first.clone();
+                let plane = plane_of(&training, LEVELS)?;
+                Box::new(move |test| scipy::predict(&training, plane, &test.input))
+            }
             Self::Rival(RivalKind::Persistence) => {
                 // Refuses what is not periodic.
-                let rival = Rival::fit(RivalKind::Persistence, &split.training);
-                Ok(rival.and_then(|rival| rival.predict(&split.test)).ok())
+                let rival = Rival::fit(RivalKind::Persistence, training).ok();
+                Box::new(move |test| Ok(rival.as_ref().and_then(|own| own.predict(test).ok())))
             }
             Self::Rival(kind) => {
-                let rival = Rival::fit(kind, &split.training)?;
-                Ok(Some(rival.predict(&split.test)?))
+                let rival = Rival::fit(kind, training)?;
+                Box::new(move |test| Ok(Some(rival.predict(test)?)))
             }
-        }
+        })
     }
 }
 
+/// The output at every sample of a recording whose outputs are not looked at; `None` where the
+/// method cannot be used.
+pub type Predictor = Box<dyn Fn(&Recording) -> Result<Option<Vec<f64>>>>;
+
 /// A model of this crate. It starts the test as its fit started.
-fn fitted(fit: &Fit<'_>, split: &Split) -> Result<Vec<f64>> {
-    let model = fit.run(&split.training)?;
-    let around = Surroundings::from_recording(&model, &split.test);
-    Ok(model.simulate_in(&split.test.input, around)?)
+fn fitted(fit: &Fit<'_>, training: &[Recording]) -> Result<Predictor> {
+    let model = fit.run(training)?;
+    Ok(Box::new(move |test| {
+        let around = Surroundings::from_recording(&model, test);
+        Ok(Some(model.simulate_in(&test.input, around)?))
+    }))
 }
 
 /// For methods without a load: one model for each load fitted, and the mean of the two nearest
 /// ones, weighted by their distances. Without a load there is one recording to fit.
-fn between_loads(
-    split: &Split,
-    predict: impl Fn(&Recording, &[f64]) -> Result<Option<Vec<f64>>>,
-) -> Result<Option<Vec<f64>>> {
-    let input = &split.test.input;
+fn between_loads(method: Method, split: &Split) -> Result<Option<Vec<f64>>> {
+    let predict = |training: &Recording| method.fit(slice::from_ref(training))?(&split.test);
     let Some(load) = &split.test.load else {
         return match split.training.as_slice() {
-            [only] => predict(only, input),
+            [only] => predict(only),
             _ => Ok(None),
         };
     };
     let mut known = Vec::new();
     for training in &split.training {
-        let Some(output) = predict(training, input)? else {
+        let Some(output) = predict(training)? else {
             return Ok(None);
         };
         known.push((middle(training), output));

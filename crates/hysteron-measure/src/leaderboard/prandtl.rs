@@ -51,7 +51,7 @@ impl PrandtlIshlinskii {
             sign,
             curve: None,
         };
-        let plays = model.plays(&recording.input);
+        let plays = plays(&model.radii, low, &recording.input);
         let target: Vec<f64> = recording.output.iter().map(|y| sign * y).collect();
         (model.weights, model.offset) = with_offset(&plays, &target, &vec![1.0; target.len()]);
         if shape == Shape::TwoSided {
@@ -85,27 +85,32 @@ impl PrandtlIshlinskii {
         }
     }
 
-    /// The plays, one series for each radius.
-    fn plays(&self, input: &[f64]) -> Vec<Vec<f64>> {
-        let play = |r: &f64| {
-            let mut w = self.low + r;
-            let step = |x: &f64| {
-                w = (x - r).max(w.min(x + r));
-                w
-            };
-            input.iter().map(step).collect()
-        };
-        self.radii.iter().map(play).collect()
-    }
-
     pub fn predict(&self, input: &[f64]) -> Vec<f64> {
-        let sum = weighted(&self.plays(input), &self.weights, input.len());
+        let sum = weighted(
+            &plays(&self.radii, self.low, input),
+            &self.weights,
+            input.len(),
+        );
         let bent = |p: &f64| match &self.curve {
             Some(curve) => curve.at(*p),
             None => p + self.offset,
         };
         sum.iter().map(|p| self.sign * bent(p)).collect()
     }
+}
+
+/// The plays, one series for each radius. Before the input, all were at the end of the branch that
+/// falls to `low`.
+pub(super) fn plays(radii: &[f64], low: f64, input: &[f64]) -> Vec<Vec<f64>> {
+    let play = |r: &f64| {
+        let mut w = low + r;
+        let step = |x: &f64| {
+            w = (x - r).max(w.min(x + r));
+            w
+        };
+        input.iter().map(step).collect()
+    };
+    radii.iter().map(play).collect()
 }
 
 /// A monotone, piecewise linear curve. It goes on beyond its ends.

@@ -117,13 +117,18 @@ fn reversal_curves(folder: &Path) -> Result<Set> {
     Ok(Set::folds("basaeri by curves", &whole, &group))
 }
 
-/// A valve under one drive predicts it under another.
-fn valve(folder: &Path) -> Result<Vec<Set>> {
+/// One of the recordings of the valve.
+pub fn valve_recording(folder: &Path, name: &str) -> Result<Recording> {
     let columns = Columns {
         time: Some("time_s"),
         ..Columns::new("voltage_V", "position")
     };
-    let file = |name: &str| read(folder, &format!("valve_{name}.csv"), columns);
+    read(folder, &format!("valve_{name}.csv"), columns)
+}
+
+/// A valve under one drive predicts it under another.
+fn valve(folder: &Path) -> Result<Vec<Set>> {
+    let file = |name: &str| valve_recording(folder, name);
     let pairs = [
         ("sine50_1", "sine100_1"),
         ("sine100_1", "sine50_1"),

@@ -348,13 +348,18 @@ impl<'a> Fit<'a> {
                 false => Start::Off,
             };
         }
-        if options.start == Start::Rest && options.rest.is_none() && plain {
-            options = at_rest(recordings, &options)?;
+        // Outliers are found first: one of them can move the rest across the range.
+        let open_rest = options.start == Start::Rest && options.rest.is_none() && plain;
+        if open_rest {
+            options.start = Start::Unknown;
         }
         let (seen, outliers) = match options.robust {
             true => outliers::mended(recordings, &options, self.progress)?,
             false => (Cow::Borrowed(recordings), Vec::new()),
         };
+        if open_rest {
+            options = at_rest(&seen, &options)?;
+        }
         if self.auto_start && self.prior.is_none() && options.start == Start::Unknown {
             options = usual_start(&seen, &options)?;
         }

@@ -78,6 +78,31 @@ fn a_rest_is_found_and_kept_for_any_recording() {
     assert!(worse >= 8, "{worse}");
 }
 
+/// In the last row the input has jumped back to where it began, and the output is the old one, as in
+/// recordings of a valve.
+#[test]
+fn a_wrong_last_row_does_not_move_the_rest() {
+    for seed in 0..6 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let plant = plant(&mut rng);
+        let rest = rng.random_range(0.5..0.9);
+        let own = recorded(&plant, &[rest], 0.45);
+        let mut wrong = own.clone();
+        wrong.input.push(own.input[0]);
+        wrong.output.push(own.output[own.len() - 1]);
+        let fit = fit().robust(true).start(Start::Rest);
+        let (clean, found) = (fit.run(&own).unwrap(), fit.run(&wrong).unwrap());
+        assert_eq!(found.fit.as_ref().unwrap().outliers.len(), 1, "seed {seed}");
+        let rest = |model: &Model| model.fit.as_ref().unwrap().other["rest"][1].as_f64();
+        let [of_clean, of_wrong] = [&clean, &found].map(|model| rest(model).unwrap());
+        // The steps of the search end at a few thousandths of the range.
+        assert!(
+            (of_clean - of_wrong).abs() < 0.02,
+            "seed {seed}: {of_wrong} for {of_clean}"
+        );
+    }
+}
+
 /// Off and on are rests: at the lowest and at the highest input.
 #[test]
 fn a_rest_is_at_least_as_good_as_off_and_on() {
