@@ -197,7 +197,9 @@ mod tests {
         let input: Vec<f64> = samples
             .map(|n| 5.0 - amplitude(n) * (n * 0.05).cos())
             .collect();
-        let known = plays(&[1.0, 3.0], 0.0, &input);
+        let (low, high) = range(&input);
+        let radius = |k: f64| 0.5 * (high - low) * k / MOST as f64;
+        let known = plays(&[radius(8.0), radius(24.0)], low, &input);
         let at = |n: usize| 2.0 + 0.4 * input[n] + 0.7 * known[0][n] - 0.3 * known[1][n];
         let output: Vec<f64> = (0..input.len()).map(at).collect();
         let (low, high) = range(&output);
