@@ -1024,7 +1024,7 @@ int32_t hysteron_step_in(uint64_t state, double input, double dt, double load, d
 
 /**
  * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
- * error, as of an input that is not finite, the state stays as it is.
+ * error the state stays as it is, and of an input that is not finite the outputs, too.
  */
 int32_t hysteron_run(uint64_t state, const double *input, double *output, size_t count);
 

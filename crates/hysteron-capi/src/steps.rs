@@ -107,7 +107,7 @@ pub unsafe extern "C" fn hysteron_step_in(
 }
 
 /// Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
-/// error, as of an input that is not finite, the state stays as it is.
+/// error the state stays as it is, and of an input that is not finite the outputs, too.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_run(
     state: u64,
@@ -125,6 +125,7 @@ pub unsafe extern "C" fn hysteron_run(
             )
         };
         STATES.with(state, "state", &mut arguments, |state| {
+            finite(input)?;
             moved(state, |state| state.run(input, output.zeros()))
         })
     })

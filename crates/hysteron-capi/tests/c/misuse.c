@@ -49,7 +49,9 @@ static void steps(uint64_t model, uint64_t state) {
     REQUIRE(hysteron_step(state, NAN, &after, NULL) == HYSTERON_INPUT_NOT_FINITE);
     REQUIRE(hysteron_step(state, INFINITY, &after, NULL) == HYSTERON_INPUT_NOT_FINITE);
     REQUIRE(hysteron_step(state, 0.5, NULL, NULL) == HYSTERON_NULL);
+    output[0] = 7.0, output[4] = 8.0;
     REQUIRE(hysteron_run(state, array, output, 5) == HYSTERON_INPUT_NOT_FINITE);
+    REQUIRE(output[0] == 7.0 && output[4] == 8.0);
     REQUIRE(hysteron_run(state, array, array + 1, 2) == HYSTERON_OVERLAP);
     REQUIRE(hysteron_run(state, NULL, output, 2) == HYSTERON_NULL);
     OK(hysteron_run(state, NULL, NULL, 0));

@@ -15,36 +15,38 @@ use maud::{Markup, html};
 
 impl Subject for View<'_> {
     fn sections() -> Vec<Section<Self>> {
-        let model = vec![
-            vec![weights_plane::figure(), weights_map::figure()],
-            vec![load_shift::figure(), load_loops::figure()],
-        ];
-        let confidence = vec![
-            vec![excitation_map::figure(), standard_errors::figure()],
-            vec![cross_validation::figure()],
-        ];
+        let first = vec![loops::figure(), output_time::figure(), input_time::figure()];
         let forward = vec![
-            output_time::figure(),
-            loops::figure(),
             load_measured::figure(),
             discrepancy::output(),
             residuals::over_input(),
             residuals::histogram(),
         ];
-        let inverse = vec![
-            input_time::figure(),
-            discrepancy::input(),
-            close_up::figure(),
+        let inverse = vec![discrepancy::input(), close_up::figure()];
+        let confidence = vec![
+            vec![excitation_map::figure(), standard_errors::figure()],
+            vec![cross_validation::figure()],
+        ];
+        let model = vec![
+            vec![weights_plane::figure(), weights_map::figure()],
+            vec![load_shift::figure(), load_loops::figure()],
+            vec![evolution::figure()],
         ];
         vec![
-            Section::new("The model", model),
-            Section::new("Confidence: what the data said", confidence),
-            Section::column("Forward: output from input", forward),
+            Section {
+                notes: |view| [html! {}, errors(view)],
+                ..Section::column("Measured and modelled", first)
+            },
+            Section::column("Errors of the output", forward),
             Section {
                 notes: about_inverse,
-                ..Section::column("Inverse: input from output", inverse)
+                ..Section::column("Errors of the inverse", inverse)
             },
-            Section::column("Memory: the plane", vec![evolution::figure()]),
+            Section {
+                notes: |view| [facts(view), html! {}],
+                ..Section::new("Confidence: what the data said", confidence)
+            },
+            Section::new("The model: the plane", model),
         ]
     }
 
@@ -63,7 +65,7 @@ impl Subject for View<'_> {
     }
 
     fn above(&self) -> Markup {
-        html! { (verdict(self)) (facts(self)) (errors(self)) }
+        verdict(self)
     }
 
     fn below(&self) -> Markup {
