@@ -33,6 +33,7 @@ from .results import (
     Snapshot,
     ThermalBody,
     TraceTable,
+    Verdict,
 )
 
 __all__ = [
@@ -474,6 +475,8 @@ class Model:
     def fit(self) -> FitSummary | _MaybeNone: ...
     @property
     def confidence(self) -> Confidence | _MaybeNone: ...
+    @property
+    def verdict(self) -> Verdict | _MaybeNone: ...
     @property
     def thermal(self) -> ThermalBody | _MaybeNone: ...
     @property
