@@ -10,7 +10,7 @@ use crate::inverse::Inverse;
 use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
-use numpy::{IntoPyArray, PyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -69,8 +69,19 @@ impl Model {
         load: Option<&Bound<'py, PyAny>>,
         start: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.start(choice("start", start, &BEGINS)?)
-            .run(py, input, time, load)
+        let state = self.start(choice("start", start, &BEGINS)?);
+        if self.inner.delay().is_none() {
+            return state.run(py, input, time, load);
+        }
+        let acting = {
+            let array = samples(input, "input")?;
+            let samples = array.as_slice()?;
+            let around = Around::new(&self.inner, samples.len(), time, load)?;
+            let acting = self.inner.delay().acting(samples, around.lent().time);
+            acting.into_owned().into_pyarray(py)
+        };
+        let output = state.run(py, acting.as_any(), time, load)?;
+        like(input, output.cast_into::<PyArray1<f64>>()?, &self.output())
     }
 
     /// The 95 % band around `simulate`: uncertainty of the weights and noise.
