@@ -136,7 +136,7 @@ impl Controller {
             output: sensor(),
             input: sensor(),
             due: scheme.due(),
-            under_way: UnderWay::new(scheme.due().saturating_sub(1)),
+            under_way: UnderWay::new(scheme.late()),
             acting: None,
             last: None,
             held: (false, false),

@@ -56,7 +56,8 @@ pub struct Scheme {
     /// Samples until a drive moves the output that is read. So many samples ahead is the target
     /// that the inverse solves for, as far as it is told ([`super::Controller::step_ahead`]), and
     /// so late the model follows the inputs. The feedback compares what is read now with what is
-    /// wanted now. `None`: one sample, and the dead time of the model ([`crate::Delay`]).
+    /// wanted now. `None`: one sample, and the dead time of the model ([`crate::Delay`]). With an
+    /// inner loop the dead time alone: the input then comes to its command in its own time.
     pub delay: Option<usize>,
 }
 
@@ -87,10 +88,16 @@ impl Scheme {
     /// Samples until a drive moves the output that is read. Without a model and a number, 0.
     #[must_use]
     pub fn due(&self) -> usize {
+        let next = usize::from(self.inner.is_none());
         let of_model =
-            |compensator: &Compensator| 1 + compensator.delay().at(Some(self.interval_s));
+            |compensator: &Compensator| next + compensator.delay().at(Some(self.interval_s));
         let of_model = || self.compensator.as_ref().map_or(0, of_model);
         self.delay.unwrap_or_else(of_model)
+    }
+
+    /// Samples by which the output answers an input that has acted up to a reading.
+    pub(super) fn late(&self) -> usize {
+        self.due().saturating_sub(usize::from(self.inner.is_none()))
     }
 
     /// Refuses settings that no loop can run with.
