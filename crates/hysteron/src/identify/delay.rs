@@ -12,7 +12,6 @@ use crate::model::{Delay, Sign, Smooth};
 use crate::progress::Progress;
 use crate::recording::{Recording, gaps};
 use crate::series::{Turning, mean_and_deviation, usual_tolerance};
-use std::borrow::Cow;
 
 /// Shifts tried, in samples.
 const LONGEST: usize = 8;
@@ -144,7 +143,7 @@ fn beginning(recording: &Recording) -> Recording {
 
 /// Sum of the squared errors over the blocks left out, and the sign of the output; without the beginning that no shift knows.
 fn squares_left_out(
-    recordings: &Cow<'_, [Recording]>,
+    recordings: &[Recording],
     options: &FitOptions,
     progress: Progress<'_>,
 ) -> Result<(f64, Sign)> {
