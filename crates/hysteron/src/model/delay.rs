@@ -224,6 +224,13 @@ impl Model {
     pub fn delay(&self) -> Delay {
         self.delay
     }
+
+    /// Whether a time of the samples changes the outputs of a series: a model that depends on time
+    /// needs it, and a dead time has another number of samples on another clock.
+    #[must_use]
+    pub fn reads_time(&self) -> bool {
+        self.is_timed() || !self.delay.is_none()
+    }
 }
 
 #[cfg(test)]
