@@ -5,9 +5,7 @@ use hysteron::control::{
     Action, Compensator, Controller, Course, Device, Disturbance, Gains, InnerLoop, Reading,
     Reference, Scheme, SimulatedPlant, run,
 };
-use hysteron::{
-    Dynamics, Error, Fit, Model, Operator, Plane, Policy, Progress, Recording, Sign,
-};
+use hysteron::{Dynamics, Error, Fit, Model, Operator, Plane, Policy, Progress, Recording, Sign};
 use hysteron_sim::plant::{PreisachPlant, PreisachPlantOptions, SensorOptions};
 use std::collections::VecDeque;
 
@@ -440,8 +438,10 @@ fn the_inverse_aims_where_the_drive_arrives() {
             under_way: VecDeque::from(vec![0.0; late]),
         };
         let fit = Fit::new().levels(40).bootstrap(0).dynamics(Dynamics::Off);
-        let model = fit.run(&recording_of(&mut plant(), dt)).unwrap();
-        assert_eq!(model.delay().samples(), late);
+        let model = fit
+            .delay(late)
+            .run(&recording_of(&mut plant(), dt))
+            .unwrap();
         let reference: Vec<f64> = (0..1200)
             .map(|n| 45.0 - 30.0 * (0.06 * f64::from(n)).cos())
             .collect();
@@ -455,7 +455,9 @@ fn the_inverse_aims_where_the_drive_arrives() {
             .unwrap();
             let course = Course {
                 reference: &reference,
-                ..Course::default()
+                headings: &[],
+                ahead: 0,
+                events: &[],
             };
             let trace = run(&mut plant(), &mut controller, &course, Progress::NONE).unwrap();
             let errors = trace.output.iter().zip(&reference).skip(300);
@@ -466,7 +468,10 @@ fn the_inverse_aims_where_the_drive_arrives() {
         println!("late {late}: default {default:.4}, aimed 0, 1, … ahead {aimed:.4?}");
         assert_eq!(default, aimed[late + 1]);
         for (ahead, error) in aimed.iter().enumerate().filter(|(n, _)| *n != late + 1) {
-            assert!(10.0 * default < *error, "{late}, {ahead}: {default} {error}");
+            assert!(
+                10.0 * default < *error,
+                "{late}, {ahead}: {default} {error}"
+            );
         }
     }
 }
