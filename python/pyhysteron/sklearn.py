@@ -67,7 +67,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         The column of `X` that is the input.
     time_column, load_column : int, optional
         The columns of `X` that are the time, s, and the load. Others are ignored.
-    load_law, load_degree, spacing, creep, lag, dynamics, curve, thermal
+    load_law, load_degree, spacing, delay, creep, lag, dynamics, curve, thermal
         As for `pyhysteron.fit`.
 
     Attributes
@@ -109,6 +109,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         load_law: Literal["auto", "shift", "weights"] = "auto",
         load_degree: int | Literal["auto"] = "auto",
         spacing: Literal["auto", "uniform"] = "auto",
+        delay: int | Literal["auto", "off"] = "auto",
         creep: int | Literal["auto", "off"] = "off",
         lag: float | Literal["auto", "off"] = "off",
         dynamics: Literal["auto", "off", "lag", "ring"] = "auto",
@@ -133,6 +134,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.load_law = load_law
         self.load_degree = load_degree
         self.spacing = spacing
+        self.delay = delay
         self.creep = creep
         self.lag = lag
         self.dynamics = dynamics

@@ -138,16 +138,12 @@ pub struct ControllerOptions {
     /// Time constant of the filter on the readings, s. Default 0: none.
     #[serde(default)]
     pub filter_s: f64,
-    /// Samples until a drive is seen to act. Default 1: the next sample.
-    #[serde(default = "one")]
-    pub delay: usize,
+    /// Samples until a drive is seen to act. Default: the next sample, or later by the dead time of
+    /// the model.
+    pub delay: Option<usize>,
     /// How long before it is due the inverse is told the reference, s. Default 0.
     #[serde(default)]
     pub preview_s: f64,
-}
-
-fn one() -> usize {
-    1
 }
 
 /// Where the gains of a PID come from.

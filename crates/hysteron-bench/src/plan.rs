@@ -113,7 +113,7 @@ impl Plan {
         let options = config.controller.as_ref();
         let ahead = options.map_or(0, |options| {
             let preview = (options.preview_s / header.dt).ceil() as usize;
-            options.delay.max(preview).min(MOST_AHEAD)
+            controller.due().max(preview).min(MOST_AHEAD)
         });
         let course_end = sources.course.as_ref().map(Course::end_s);
         let mut plan = Self {
@@ -228,7 +228,11 @@ impl Made {
             tolerance: self.tolerance,
             bias: header.safe.max(drives.0).min(drives.1),
             filter_s: options.filter_s,
-            delay: options.delay,
+            delay: Some(
+                options
+                    .delay
+                    .unwrap_or_else(|| 1 + late(sources.model.as_ref(), header.dt)),
+            ),
             slew: config.limits.slew,
             gate: Some(SMALL * scale(sources)),
             ..Scheme::new(header.dt, drives)
@@ -281,6 +285,11 @@ impl Made {
         };
         Ok(Compensator::shadowed(model, learning)?)
     }
+}
+
+/// The dead time of the model, in samples of the device.
+fn late(model: Option<&Model>, dt: f64) -> usize {
+    model.map_or(0, |model| model.delay().at(Some(dt)))
 }
 
 /// How far the output goes: through the reference, or the model's range where that is wider.

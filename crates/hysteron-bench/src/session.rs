@@ -408,9 +408,12 @@ impl Session {
         let next: Vec<f64> = (1..=plan.ahead)
             .map(|n| course.at(elapsed + n as f64 * step))
             .collect();
-        let action = plan
-            .controller
-            .step_after(dt, course.target(elapsed), &next, reading)?;
+        let due = elapsed + plan.controller.due() as f64 * step;
+        let target = hysteron::control::Reference {
+            output: course.at(elapsed),
+            heading: course.target(due).heading,
+        };
+        let action = plan.controller.step_after(dt, target, &next, reading)?;
         if let (Some(beside), Some(input)) = (&mut plan.beside, action.filtered.input) {
             let sample = hysteron::Sample {
                 input,

@@ -39,7 +39,7 @@ impl<'a> Plant<'a> {
         Self {
             model,
             state: model.start(),
-            waiting: std::iter::repeat_n(rest, scheme.delay.saturating_sub(1)).collect(),
+            waiting: std::iter::repeat_n(rest, scheme.due().saturating_sub(1)).collect(),
             dt: scheme.interval_s,
         }
     }
@@ -154,7 +154,7 @@ fn travel(model: &Model, scheme: &Scheme, pid: Option<Gains>, inverse: bool) -> 
             output: reference(n),
             heading: None,
         };
-        let next: Vec<f64> = (1..=scheme.delay).map(|k| reference(n + k)).collect();
+        let next: Vec<f64> = (1..=scheme.due()).map(|k| reference(n + k)).collect();
         let action = controller.step_ahead(target, &next, reading)?;
         travelled += (action.drive - drive).abs();
         drive = action.drive;
@@ -181,7 +181,7 @@ mod tests {
                 let model = Model::new(Operator::Mkp, plane, weights, 1.0, sign).unwrap();
                 for (delay, inverse) in [(1, false), (1, true), (3, true)] {
                     let scheme = Scheme {
-                        delay,
+                        delay: Some(delay),
                         ..Scheme::new(0.05, (0.0, 10.0))
                     };
                     let tuned = tune(&model, &scheme, inverse).unwrap();

@@ -846,7 +846,8 @@ size_t hysteron_last_error(char *text, size_t size);
 int32_t hysteron_model_limits(uint64_t model, struct HysteronLimits *limits);
 
 /**
- * Reads the model file at `path`. Free the handle with `hysteron_model_free`.
+ * Reads the model file at `path`. Free the handle with `hysteron_model_free`. States, batches and
+ * learners take the inputs as they act: a dead time in the file (`delay`) is left to the caller.
  */
 int32_t hysteron_model_read(const char *path, uint64_t *model);
 

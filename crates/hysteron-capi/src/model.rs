@@ -13,7 +13,8 @@ use std::path::Path;
 
 pub(crate) static MODELS: Table<Model> = Table::new(1);
 
-/// Reads the model file at `path`. Free the handle with `hysteron_model_free`.
+/// Reads the model file at `path`. Free the handle with `hysteron_model_free`. States, batches and
+/// learners take the inputs as they act: a dead time in the file (`delay`) is left to the caller.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u64) -> i32 {
     guard(|| {

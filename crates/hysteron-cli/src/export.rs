@@ -38,6 +38,7 @@ fn c(args: &args::ExportC) -> Result<()> {
             "rounding": export.rounding,
             "stages": export.stages,
             "dt": export.dt,
+            "delay_samples": model.delay().at(args.dt),
             "flash_bytes": memory.constants,
             "ram_bytes": {
                 "state": memory.state,
@@ -79,6 +80,7 @@ fn c(args: &args::ExportC) -> Result<()> {
     if !export.inverse {
         lines.push("weights below zero: the C runs forward only".into());
     }
+    lines.extend(hysteron_export::delay_note(&model, args.dt));
     print(&lines.join("\n"))
 }
 
@@ -104,16 +106,22 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     if args.json.json {
         let object = json!({
             "file": file, "name": name, "fmi": options.fmi.version(),
-            "token": token, "bytes": bytes,
+            "token": token, "bytes": bytes, "delay_s": model.delay().seconds(),
             "inputs": inputs, "outputs": outputs, "parameters": parameters,
         });
         return print(&object.to_string());
     }
     let (inputs, outputs) = (inputs.join(", "), outputs.join(", "));
     let kib = bytes.div_ceil(1024);
-    print(&format!(
-        "{file}: block {name}, {inputs} -> {outputs}, {kib} KiB"
-    ))
+    let block = format!("{file}: block {name}, {inputs} -> {outputs}, {kib} KiB");
+    let note = hysteron_export::delay_note(&model, None);
+    print(
+        &[Some(block), note]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join("\n"),
+    )
 }
 
 /// The model, at a load where one is given.

@@ -158,6 +158,7 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
             args::Spacing::Uniform => Spacing::Uniform,
             args::Spacing::Auto => Spacing::Auto,
         },
+        delay: count("delay", args.delay)?,
         creep: count("creep", args.creep)?,
         lag: match args.lag {
             Step::Auto => Choice::Auto,

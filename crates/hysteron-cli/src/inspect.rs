@@ -186,6 +186,13 @@ fn model(args: &args::Inspect) -> Result<()> {
     if let Some(confidence) = &summary.confidence {
         lines.push(least_certain(confidence, &model));
     }
+    if let Some(seconds) = summary.delay_s {
+        let samples = model.delay().samples();
+        lines.push(format!(
+            "dead time {} s ({samples} samples of the recording)",
+            text::number(seconds)
+        ));
+    }
     if let Some(load) = &summary.load {
         let unit = load
             .unit

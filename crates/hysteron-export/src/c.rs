@@ -50,7 +50,8 @@ pub struct COptions<'a> {
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
 /// in that type as well. A model with negative weights has no inverse there either.
 ///
-/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`].
+/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`]. The code
+/// takes inputs as they act; a dead time is left to its caller ([`crate::delay_note`]).
 ///
 /// Files that were exported before, and not edited since, are replaced, all together or not at all.
 /// A path alone as `target` replaces others of their names too; [`Destination::keeping_foreign`]

@@ -36,7 +36,8 @@ pub struct Fmu {
 /// whatever file is there.
 ///
 /// A model that depends on time takes the communication step as its time step. One that depends on
-/// a load has the load as an input.
+/// a load has the load as an input. The block takes inputs as they act; a dead time is left to its
+/// caller ([`crate::delay_note`]).
 ///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};

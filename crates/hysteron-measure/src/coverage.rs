@@ -154,7 +154,8 @@ impl Coverage {
         };
         let around = hysteron::Surroundings::from_recording(model, recording);
         let output = model.simulate_in(&recording.input, around)?;
-        let half = band.run(&model.start(), &model.seen(&recording.input, around)?)?;
+        let acting = model.acting(&recording.input, around)?;
+        let half = band.run(&model.start(), &model.seen(&acting, around)?)?;
         for n in (0..recording.len()).filter(|n| of(*n)) {
             let error = recording.output[n] - output[n];
             self.inside += usize::from(error.abs() <= half[n]);

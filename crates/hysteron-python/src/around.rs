@@ -20,7 +20,7 @@ impl Around {
         load: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         // Time is ignored where nothing depends on it.
-        let time = times(time)?.filter(|_| model.is_timed());
+        let time = times(time)?.filter(|_| model.reads_time());
         let load = load.map(|load| loads(load, count)).transpose()?;
         for (name, series) in [("time", &time), ("load", &load)] {
             if let Some(series) = series {

@@ -16,8 +16,9 @@ use std::sync::Arc;
 /// Many models with a state each, which move together: a fleet, an ensemble, or one model with many
 /// inputs. A *lane* is one model with its state.
 ///
-/// Each lane gives the same outputs as its model alone (`State.run`), bit for bit. Many samples are
-/// divided among all processors, without the interpreter's lock.
+/// Each lane gives the same outputs as its model alone (`State.run`), bit for bit. So the inputs are
+/// those that act: a dead time (`Model.delay_s`) is left to the caller. Many samples are divided
+/// among all processors, without the interpreter's lock.
 ///
 /// Threads may share a batch: each call ends before the next one begins.
 ///

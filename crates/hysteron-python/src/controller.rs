@@ -8,6 +8,7 @@ use crate::choices::POLICIES;
 use crate::choices::{choice, direction, none_left};
 use crate::device::{events_of, follow};
 use crate::error::{Raise, finite, number};
+use crate::integer::Integer;
 use crate::model::Model;
 use crate::pid::Pid;
 use crate::plant::SimulatedPlant;
@@ -58,6 +59,10 @@ use pyo3::types::PyDict;
 /// stuck_s : float, optional
 ///     A sensor whose readings do not change for this time is taken as broken, s, above 0. None
 ///     for sensors without noise.
+/// delay : int, optional
+///     Samples until a drive moves the output that is read, up to 1001. The inverse solves for the
+///     target of so many samples later, as far as it is told (`step`, `run`). By default one, and
+///     the dead time of the model (`Model.delay_s`).
 ///
 /// Raises
 /// ------
@@ -91,8 +96,8 @@ impl Controller {
     #[new]
     #[pyo3(signature = (
         interval_s, commands, *, model=None, pid=None, policy="hold", tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=false,
-        filter_s=0.0, stuck_s=None, **unknown
-    ), text_signature = "(interval_s, commands, *, model=None, pid=None, policy='hold', tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=False, filter_s=0.0, stuck_s=None)")]
+        filter_s=0.0, stuck_s=None, delay=None, **unknown
+    ), text_signature = "(interval_s, commands, *, model=None, pid=None, policy='hold', tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=False, filter_s=0.0, stuck_s=None, delay=None)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         interval_s: f64,
@@ -107,6 +112,7 @@ impl Controller {
         square_root: bool,
         filter_s: f64,
         stuck_s: Option<f64>,
+        delay: Option<Integer>,
         unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         none_left("Controller", unknown, &NAMES)?;
@@ -126,6 +132,7 @@ impl Controller {
             }),
             filter_s,
             stuck_s,
+            delay: delay.map(|delay| delay.convert("delay")).transpose()?,
             ..Scheme::new(interval_s, commands)
         };
         let inner = Shared::new(control::Controller::new(scheme).raise()?);
@@ -146,8 +153,8 @@ impl Controller {
     /// heading : {None, 'rising', 'falling'}
     ///     Where the target goes next, for 'anticipate'; see `headings`.
     /// ahead : array_like, shape (m,), optional
-    ///     The targets at the samples after this one, as far as they are known. With a fixed model
-    ///     that has a thermal body, the drive starts before they are due. Earlier targets are missed
+    ///     The targets at the samples after this one, as far as they are known. The inverse solves
+    ///     for the one that is `delay` samples later. With a fixed model that has a thermal body, the drive starts before they are due. Earlier targets are missed
     ///     by up to a tenth of the range for that.
     ///
     /// Returns
@@ -273,7 +280,8 @@ impl Controller {
     /// events : sequence of dict
     ///     What happens to a simulated plant: 'at_s', and what `SimulatedPlant.disturb` knows.
     /// ahead : int
-    ///     How many samples of the reference the controller is told ahead; see `step`.
+    ///     How many samples of the reference the controller is told ahead; see `step`. It is always
+    ///     told the one that is due.
     ///
     /// Returns
     /// -------
@@ -345,7 +353,7 @@ impl Controller {
     }
 }
 
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 11] = [
     "model",
     "pid",
     "policy",
@@ -356,6 +364,7 @@ const NAMES: [&str; 10] = [
     "square_root",
     "filter_s",
     "stuck_s",
+    "delay",
 ];
 
 fn compensator(model: &Bound<'_, PyAny>) -> PyResult<Compensator> {

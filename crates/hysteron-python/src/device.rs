@@ -37,12 +37,12 @@ fn each(
     controller: &Shared<Controller>,
     course: &Course<'_>,
 ) -> PyResult<Trace> {
-    let dt_s = controller.with(py, |controller| controller.interval_s());
+    let (dt_s, due) = controller.with(py, |controller| (controller.interval_s(), controller.due()));
     let (count, advance) = (course.reference.len(), device.getattr_opt("advance")?);
     let mut trace = Trace::default();
     for (n, &output) in course.reference.iter().enumerate() {
         py.check_signals()?;
-        let (target, next) = course.target(n);
+        let (target, next) = course.target(n, due);
         let reading = reading(&device.call_method0("read")?)?;
         let step = |controller: &mut Controller| {
             let action = controller.step_ahead(target, next, reading)?;

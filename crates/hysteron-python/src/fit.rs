@@ -66,6 +66,11 @@ use pyo3::types::{PyDict, PyString};
 ///     left out, of three or more, and otherwise 1.
 /// spacing : {'auto', 'uniform'}
 ///     Where the levels are. 'auto': close together where the output moves, if that is better.
+/// delay : int, 'auto' or 'off'
+///     Dead time: samples from an input to the output that answers it, up to 1000. 'auto' looks for
+///     up to 7 and takes them only where they predict parts of the recording that were left out
+///     clearly better; none without `time` at equal distances, with a load, and where `creep` or
+///     `lag` is asked for. See `Model.delay_s`.
 /// creep : int, 'auto' or 'off'
 ///     Terms of a creep after the operators, 0 to 4. 'auto' takes creep only where it predicts
 ///     parts of the recording that were left out. Needs `time`.
@@ -133,7 +138,7 @@ use pyo3::types::{PyDict, PyString};
 #[pyo3(signature = (
     recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None,
     load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', delay='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -261,6 +266,7 @@ pub(crate) fn fit_with(
     let defaults = FitOptions {
         robust: true,
         spacing: Spacing::Auto,
+        delay: Choice::Auto,
         dynamics: Dynamics::Auto,
         ..FitOptions::plain()
     };
@@ -352,6 +358,11 @@ fn fit_options(
             "load_law" => options.load_law = choice("load_law", &text()?, &LAWS)?,
             "robust" => options.robust = named(&name, "True or False", &value)?,
             "spacing" => options.spacing = choice("spacing", &text()?, &SPACINGS)?,
+            "delay" => {
+                let samples =
+                    |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.convert("delay");
+                options.delay = stage(&name, &value, 0, samples)?;
+            }
             "creep" => {
                 let terms = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.convert("creep");
                 options.creep = stage(&name, &value, 0, terms)?;
@@ -386,8 +397,8 @@ const OPTIONS: [&str; 10] = [
 ];
 
 /// The options of the stages around the operators, which only `fit` has.
-const STAGES: [&str; 7] = [
-    "load_law", "robust", "spacing", "creep", "lag", "dynamics", "curve",
+const STAGES: [&str; 8] = [
+    "load_law", "robust", "spacing", "delay", "creep", "lag", "dynamics", "curve",
 ];
 
 const DYNAMICS: [(&str, Dynamics); 4] = [

@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 ///     default each file is an actuator.
 /// time, load : str, optional
 ///     The columns of time and load.
-/// levels, range, operator, solver, smooth, ridge, robust, start, sign, offset, load_law, load_degree, spacing, creep, lag, dynamics, curve, bootstrap, thermal, prior
+/// levels, range, operator, solver, smooth, ridge, robust, start, sign, offset, load_law, load_degree, spacing, delay, creep, lag, dynamics, curve, bootstrap, thermal, prior
 ///     As for `pyhysteron.fit`.
 /// hold_out : str, optional
 ///     A part of each recording that takes no part in its fit, as for `pyhysteron.fit`.
@@ -72,7 +72,7 @@ use std::path::{Path, PathBuf};
 #[pyo3(signature = (
     data, target, *, input, output, by=None, time=None, load=None, bootstrap=None, hold_out=None, thermal=None,
     prior=None, repair=false, force=false, progress=None, **options,
-), text_signature = "(data, target, *, input, output, by=None, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, hold_out=None, thermal=None, prior=None, time=None, load=None, repair=False, force=False, progress=None)")]
+), text_signature = "(data, target, *, input, output, by=None, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', delay='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, hold_out=None, thermal=None, prior=None, time=None, load=None, repair=False, force=False, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit_fleet<'py>(
     py: Python<'py>,

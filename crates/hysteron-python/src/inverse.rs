@@ -174,14 +174,15 @@ impl Inverse {
             let text = format!("`heading` has {m} entries, `target` {n}");
             return Err(PyValueError::new_err(text));
         }
-        let solutions = detached(py, || {
+        let solutions: hysteron::Result<Vec<_>> = detached(py, || {
             let (inverse, around) = (self.inner()?, around.lent());
             let through = |state: &mut hysteron::State| match &headings {
                 Some(headings) => inverse.headed_in(state, target, headings, tolerance, around),
                 None => inverse.series_in(state, target, policy, tolerance, around),
             };
             let Some(state) = state else {
-                return through(&mut model.start());
+                let solutions = through(&mut model.start())?;
+                return Ok(model.delay().giving(solutions, around.time));
             };
             state.inner.with_detached(|state| {
                 // An error in the middle leaves the state where it was.

@@ -10,7 +10,7 @@ use crate::inverse::Inverse;
 use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
-use numpy::{IntoPyArray, PyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,9 +27,11 @@ impl Model {
     /// ----------
     /// input : array_like, shape (n,)
     ///     In the input's unit. With a thermal body it is the drive, each sample held since the one
-    ///     before. Values beyond the plane act as its ends.
+    ///     before. Values beyond the plane act as its ends. Each acts after the dead time of the
+    ///     model (`delay_s`); a `State` takes the inputs as they act.
     /// time : array_like, shape (n,), optional
-    ///     Needed for a model that depends on time (`is_timed`), ignored otherwise.
+    ///     Needed for a model that depends on time (`is_timed`). With a dead time it says how many
+    ///     samples that is; without it they are as many as in the recording. Ignored otherwise.
     ///     As in `Recording`.
     /// load : float, or array_like of shape (n,), optional
     ///     For a model that depends on a load. One number is the load of all samples.
@@ -69,8 +71,22 @@ impl Model {
         load: Option<&Bound<'py, PyAny>>,
         start: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.start(choice("start", start, &BEGINS)?)
-            .run(py, input, time, load)
+        let state = self.start(choice("start", start, &BEGINS)?);
+        if self.inner.delay().is_none() {
+            return state.run(py, input, time, load);
+        }
+        let acting = {
+            let array = samples(input, "input")?;
+            let samples = array.as_slice()?;
+            let around = Around::new(&self.inner, samples.len(), time, load)?;
+            let acting = self.inner.acting(samples, around.lent());
+            acting
+                .raise_of("input", samples)?
+                .into_owned()
+                .into_pyarray(py)
+        };
+        let output = state.run(py, acting.as_any(), time, load)?;
+        like(input, output.cast_into::<PyArray1<f64>>()?, &self.output())
     }
 
     /// The 95 % band around `simulate`: uncertainty of the weights and noise.
@@ -162,7 +178,10 @@ impl Model {
         let array = samples(input, "input")?;
         let samples = array.as_slice()?;
         let around = Around::new(&self.inner, samples.len(), time, load)?;
-        let bounds = detached(py, || self.inner.bounds_in(&begin, samples, around.lent()));
+        let bounds = detached(py, || {
+            let acting = self.inner.acting(samples, around.lent())?;
+            self.inner.bounds_in(&begin, &acting, around.lent())
+        });
         let (low, high) = bounds.raise_of("input", samples)?;
         Ok((
             like(input, low.into_pyarray(py), "lower")?,

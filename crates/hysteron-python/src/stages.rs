@@ -67,6 +67,13 @@ impl Model {
         self.inner.lag()
     }
 
+    /// Dead time of the actuator, s; 0 for none. Fits, `evaluate`, `simulate`, `Inverse.run` without a
+    /// state and controllers take account of it; a state is stepped with the inputs as they act.
+    #[getter]
+    fn delay_s(&self) -> f64 {
+        self.inner.delay().seconds()
+    }
+
     /// Whether the output depends on time.
     #[getter]
     fn is_timed(&self) -> bool {

@@ -110,6 +110,7 @@ impl State {
     /// Parameters
     /// ----------
     /// input : array_like, shape (n,)
+    ///     As it acts: a state knows no dead time (`Model.delay_s`).
     /// time : array_like, shape (n,) or (n + 1,), optional
     ///     As for `Model.simulate`. The time step of the first sample is 0. To go on from earlier
     ///     samples, give one more time: that of the last of them, before the others.

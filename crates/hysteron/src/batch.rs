@@ -18,7 +18,8 @@ const MOST_LANES: usize = 1 << 24;
 /// model. Each gives the same outputs and the same state as its model alone ([`Model::run_in`]), to
 /// the last bit. Many samples are divided among all threads, lane by lane.
 ///
-/// Inputs and outputs are row by row: first all samples of lane 0, then all of lane 1.
+/// Inputs and outputs are row by row: first all samples of lane 0, then all of lane 1. The inputs
+/// are those that act: a lane knows no dead time ([`Model::acting`]).
 ///
 /// ```
 /// use hysteron::{BatchModel, Model, Operator, Plane, Sign};

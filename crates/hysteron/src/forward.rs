@@ -48,6 +48,7 @@ pub fn forward(
     let (mut output_model, mut errors) = (Vec::new(), Vec::new());
     for recording in recordings {
         recording.check()?;
+        let recording = &*model.delay().of_recording(recording);
         let (mut state, _) = begin(model, recording, start)?;
         let (output, _) = model.run_over(&mut state, recording)?;
         errors.push(compare(&recording.output, &output));

@@ -159,7 +159,8 @@ pub fn fit_holding_out(
         .into_iter()
         .flat_map(|split| split.held_out)
         .collect();
-    tell_errors(&mut model, recordings, |n| !held[n])?;
+    let acting = model.delay().of_recordings(recordings);
+    tell_errors(&mut model, &acting, |n| !held[n])?;
     let (measured, modelled) = simulated(&model, recordings)?;
     let report = compare(&training, recordings, &measured, &modelled, |n| held[n])?;
     report.record_in(&mut model);
@@ -186,8 +187,9 @@ pub fn held_out(
 fn simulated(model: &Model, recordings: &[Recording]) -> Result<(Vec<f64>, Vec<f64>)> {
     let (mut measured, mut modelled) = (Vec::new(), Vec::new());
     for recording in recordings {
+        let recording = model.delay().of_recording(recording);
         measured.extend_from_slice(&recording.output);
-        modelled.extend(model.run_over(&mut model.start(), recording)?.0);
+        modelled.extend(model.run_over(&mut model.start(), &recording)?.0);
     }
     Ok((measured, modelled))
 }

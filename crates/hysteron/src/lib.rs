@@ -89,7 +89,7 @@ pub use inspect::{
     inspect_model, inspect_recording,
 };
 pub use model::{
-    Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Excitation, FirstOrder,
+    Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Delay, Excitation, FirstOrder,
     FitSummary, FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model,
     OperatorState, Operators, Plane, Policy, Registration, RivalScore, Sample, Score, SeenFile,
     Sign, Smooth, Solver, StageConstants, Start, State, Surroundings, Validation, Wanted,

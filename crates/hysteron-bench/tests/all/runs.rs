@@ -2,7 +2,7 @@
 
 use super::bench::{PID, bench, column, config, folder, plain, rows};
 use super::device::{DT, SAFE, start};
-use hysteron::{Model, Operator, Plane, Sign};
+use hysteron::{Delay, Model, Operator, Plane, Sign};
 use hysteron_bench::{Config, End, Options, dry_run};
 
 const RECORD: &str = "mode = 'record'\nlog = 'run.csv'\nlimits = { drive = [0, 8] }\n\
@@ -75,11 +75,14 @@ fn a_pid_follows_begins_where_the_drive_is_and_keeps_to_its_slew() {
 }
 
 /// A model of the device without its lag.
-fn model(folder: &tempfile::TempDir) {
+fn lagless() -> Model {
     let plane = Plane::new(1.0, 10.0, 10).unwrap();
     let weights = (1..=10).flat_map(|j| (1..=j).map(move |i| if i == j { 2.0 } else { 0.0 }));
-    let model = Model::new(Operator::Mkp, plane, weights.collect(), 0.0, Sign::Positive).unwrap();
-    model.write(&folder.path().join("model.json")).unwrap();
+    Model::new(Operator::Mkp, plane, weights.collect(), 0.0, Sign::Positive).unwrap()
+}
+
+fn model(folder: &tempfile::TempDir) {
+    lagless().write(&folder.path().join("model.json")).unwrap();
 }
 
 #[test]
@@ -269,4 +272,53 @@ fn limits_wider_than_the_devices_are_refused_and_it_is_told_to_quit() {
     assert!(refused.unwrap_err().to_string().contains("wider"));
     let report = served.join().unwrap();
     assert!(report.quit && report.drives.is_empty());
+}
+
+#[test]
+fn a_controller_aims_by_its_key_and_else_by_the_dead_time_of_the_model() {
+    let commands = |model: Model, key: &str| {
+        let folder = folder();
+        model.write(&folder.path().join("model.json")).unwrap();
+        let text = format!(
+            "mode = 'control'\nlog = 'run.csv'\nreference = {{ table = 'reference.csv' }}\n\
+             limits = {{ drive = [0, 8] }}\n\
+             controller = {{ kind = 'inverse', model = 'model.json'{key} }}"
+        );
+        let (address, served) = start(vec![]);
+        let config = config(&folder, &text, &format!("tcp = '{address}'"));
+        plain(&config, &Options::default()).unwrap();
+        served.join().unwrap();
+        column(&folder.path().join("run.csv"), "command")
+    };
+    let late = || lagless().with_delay(Delay::new(1, 2.0 * DT).unwrap());
+    // Two samples of the device, whose interval is half that of the recording.
+    let [one, three] = [", delay = 1", ", delay = 3"].map(|key| commands(lagless(), key));
+    assert_eq!(commands(lagless(), ""), one);
+    assert_eq!(commands(late(), ""), three);
+    assert_eq!(commands(late(), ", delay = 1"), one);
+    // Aimed two samples further, the same inputs come two samples earlier.
+    let least = |shift: usize| {
+        let pairs = three[10..60].iter().zip(&one[10 + shift..]);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert!(
+        least(2) < 1e-9 && least(0) > 0.1,
+        "{} {}",
+        least(2),
+        least(0)
+    );
+}
+
+#[test]
+fn a_delay_without_end_is_refused() {
+    let folder = folder();
+    model(&folder);
+    let text = "mode = 'control'\nlog = 'run.csv'\nreference = { table = 'reference.csv' }\n\
+                limits = { drive = [0, 8] }\n\
+                controller = { kind = 'inverse', model = 'model.json', delay = 1002 }";
+    let (address, served) = start(vec![]);
+    let config = config(&folder, text, &format!("tcp = '{address}'"));
+    let said = plain(&config, &Options::default()).unwrap_err().to_string();
+    assert!(said.contains("`delay` must be at most 1001"), "{said}");
+    assert_eq!(served.join().unwrap().drive, SAFE);
 }

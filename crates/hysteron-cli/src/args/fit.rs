@@ -81,6 +81,10 @@ pub(crate) struct FitHow {
     /// distances
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) spacing: Spacing,
+    /// Dead time: samples from an input to the output that answers it, up to 1000; `auto` (up to 7,
+    /// where they predict parts of the recording left out) or `off`. Needs --time
+    #[arg(long, value_name = "N", default_value = "auto", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) delay: Step,
     /// Creep of the output: `auto` (where it predicts parts of the recording left out), `off`, or
     /// the number of terms, up to 4. Needs --time
     #[arg(long, value_name = "N", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]

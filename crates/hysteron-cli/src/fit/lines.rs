@@ -33,6 +33,7 @@ pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> Stri
     );
     lines.extend(outliers_line(fit, model));
     lines.extend(model.thermal.as_ref().map(thermal_line));
+    lines.extend(delay_line(model));
     lines.extend(load_line(model));
     lines.extend(after_line(model, args));
     lines.extend(ring_line(model, args));
@@ -162,6 +163,13 @@ fn loads_left_out(model: &Model, unit: &str) -> Option<String> {
         ),
     };
     Some(error + &silent)
+}
+
+/// The dead time, where there is one.
+fn delay_line(model: &Model) -> Option<String> {
+    let delay = model.delay();
+    let (samples, seconds) = (delay.samples(), text::number(delay.seconds()));
+    (!delay.is_none()).then(|| format!("dead time of {samples} samples, {seconds} s"))
 }
 
 /// The output curve; said where it was asked for.

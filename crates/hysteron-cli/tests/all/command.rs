@@ -477,8 +477,8 @@ fn bad_models_are_refused_by_field() {
             "field `format`: is `other`",
         ),
         (
-            change("/version", 4.into()),
-            "field `version`: version 4 is not known",
+            change("/version", 5.into()),
+            "field `version`: version 5 is not known",
         ),
         (
             change("/operator", "preisach".into()),

@@ -6,6 +6,7 @@ mod common;
 
 mod adapt;
 mod command;
+mod delay;
 mod design;
 mod export;
 mod export_fmu;

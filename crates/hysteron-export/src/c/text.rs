@@ -97,6 +97,7 @@ pub(super) fn header<T: Number>(
     ];
     let staged = constants.stages.as_ref();
     lines.extend(staged.into_iter().flat_map(|staged| remarks(model, staged)));
+    lines.extend(crate::delay_note(model, export.dt));
     let (mut sizes, mut weights) = (String::new(), start_declared(export, constants));
     if let (Some(bytes), Some(learned)) = (memory.adaptation, learned) {
         lines.push(format!(

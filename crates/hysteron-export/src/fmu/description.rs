@@ -29,9 +29,13 @@ pub(super) fn xml(
 fn about(model: &Model, inverse: bool) -> String {
     let (operator, levels) = (model.operator(), model.plane().levels());
     let operator = format!("{operator:?}").to_uppercase();
-    match inverse {
+    let block = match inverse {
         false => format!("{operator} hysteresis model with {levels} levels"),
         true => format!("Exact inverse of a hysteresis model ({operator}, {levels} levels)"),
+    };
+    match crate::delay_note(model, None) {
+        None => block,
+        Some(note) => format!("{block}; {note}"),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Checks a scenario.
 
 use super::{LoopOptions, Reference, Scenario};
-use hysteron::{Error, Model, Operator, Result, Sign};
+use hysteron::{Delay, Error, Model, Operator, Result, Sign};
 
 /// Most levels of a model that is identified anew for each run.
 const MOST_LEVELS: usize = 100;
@@ -70,11 +70,14 @@ impl Scenario {
             filter_s,
             tolerance,
             preview_s,
+            delay,
             tuning: _,
         } = self.shared;
         require(from_zero(filter_s), "loop.filter_s", NOT_NEGATIVE)?;
         require(from_zero(tolerance), "loop.tolerance", NOT_NEGATIVE)?;
         require(from_zero(preview_s), "loop.preview_s", NOT_NEGATIVE)?;
+        let few = delay.is_none_or(|samples| samples <= Delay::MOST + 1);
+        require(few, "loop.delay", "must be at most 1001 samples")?;
         self.check_adaptation()
             .or_else(|error| refuse("adaptation", &error.to_string()))?;
         self.check_events()

@@ -3,7 +3,7 @@
 
 use super::{Reference, Scenario};
 use hysteron::control::{Controller, Scheme};
-use hysteron::{DesignOptions, Rates, design};
+use hysteron::{Choice, DesignOptions, Rates, design};
 use hysteron::{Fit, FitOptions, Model, Plane, Recording, Result};
 
 /// How many triangles the experiment of a wire has, and its steps as shares of the drive's range.
@@ -34,6 +34,7 @@ pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Resul
         levels: options.levels,
         range: Some(options.range),
         smooth: (0.0, options.smooth).into(),
+        delay: Choice::Auto,
         ..FitOptions::plain()
     })
     .run(&recording)?;
@@ -83,6 +84,7 @@ fn with_body(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
     let mut model = Fit::from(&FitOptions {
         levels: options.levels,
         smooth: options.smooth.into(),
+        delay: Choice::Auto,
         ..FitOptions::plain()
     })
     .thermal(true)

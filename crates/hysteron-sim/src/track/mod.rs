@@ -197,6 +197,7 @@ fn base(scenario: &Scenario) -> Result<Scheme> {
         drives,
         inner: None,
         filter_s: scenario.shared.filter_s,
+        delay: scenario.shared.delay,
         stuck_s: (scenario.plant.noisy()).then_some(STUCK_SAMPLES * scenario.interval_s),
         ..Scheme::new(scenario.interval_s, commands)
     })

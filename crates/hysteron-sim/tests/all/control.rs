@@ -2,9 +2,12 @@
 
 use crate::loops::Known;
 use hysteron::control::{
-    Action, Compensator, Controller, Device, Gains, InnerLoop, Reading, Reference, Scheme,
+    Action, Compensator, Controller, Course, Device, Disturbance, Gains, InnerLoop, Reading,
+    Reference, Scheme, SimulatedPlant, run,
 };
-use hysteron::{Error, Model, Operator, Plane, Policy, Sign};
+use hysteron::{Dynamics, Error, Fit, Model, Operator, Plane, Policy, Progress, Recording, Sign};
+use hysteron_sim::plant::{PreisachPlant, PreisachPlantOptions, SensorOptions};
+use std::collections::VecDeque;
 
 fn gains(gain: f64, integral_s: f64, derivative_s: f64) -> Gains {
     Gains {
@@ -359,6 +362,116 @@ fn out_of_reach_it_stays_at_the_end_and_comes_back_on_the_model() {
         for n in (0..700).chain(1300..2000) {
             // The inverse is exact to rounding.
             assert!((outputs[n] - targets[n]).abs() < 1e-9, "{n}");
+        }
+    }
+}
+
+/// A plant that gets each drive so many samples late, as from a bus or an amplifier with a buffer.
+struct Late {
+    plant: Box<dyn SimulatedPlant>,
+    under_way: VecDeque<f64>,
+}
+
+impl Device for Late {
+    fn read(&mut self) -> Reading {
+        self.plant.read()
+    }
+    fn write(&mut self, drive: f64) {
+        self.under_way.push_back(drive);
+        let arrived = self.under_way.pop_front().unwrap();
+        self.plant.write(arrived);
+    }
+}
+
+impl SimulatedPlant for Late {
+    fn advance(&mut self, dt_s: f64) {
+        self.plant.advance(dt_s);
+    }
+    fn truth(&self) -> Reading {
+        self.plant.truth()
+    }
+    fn disturb(&mut self, disturbance: Disturbance) -> hysteron::Result<()> {
+        self.plant.disturb(disturbance)
+    }
+}
+
+/// A simulated piezo stage without a lag or noise.
+fn stage() -> PreisachPlant {
+    let options = PreisachPlantOptions::default();
+    PreisachPlant::new(&PreisachPlantOptions {
+        lag_s: 0.0,
+        output_sensor: SensorOptions {
+            accuracy: 0.0,
+            ..options.output_sensor
+        },
+        ..options
+    })
+    .unwrap()
+}
+
+/// A row holds the input that has acted up to its reading.
+fn recording_of(plant: &mut dyn SimulatedPlant, dt: f64) -> Recording {
+    let (mut time, mut input, mut output) = (vec![], vec![], vec![]);
+    for n in 0..6000 {
+        let phase = 0.04 * f64::from(n);
+        let drive = 75.0 - (75.0 - 0.011 * f64::from(n)) * phase.cos();
+        plant.write(drive);
+        plant.advance(dt);
+        time.push(dt * f64::from(n));
+        input.push(drive);
+        output.push(plant.truth().output);
+    }
+    Recording {
+        time: Some(time),
+        ..Recording::new(input, output).unwrap()
+    }
+}
+
+/// The inverse alone on a simulated stage whose drives come `late` samples late: aimed at the
+/// sample where the drive arrives it errs least by far, and that is the default.
+#[test]
+fn the_inverse_aims_where_the_drive_arrives() {
+    let dt = 0.01;
+    for late in [0, 1, 3] {
+        let plant = || Late {
+            plant: Box::new(stage()),
+            under_way: VecDeque::from(vec![0.0; late]),
+        };
+        let fit = Fit::new().levels(40).bootstrap(0).dynamics(Dynamics::Off);
+        let model = fit
+            .delay(late)
+            .run(&recording_of(&mut plant(), dt))
+            .unwrap();
+        let reference: Vec<f64> = (0..1200)
+            .map(|n| 45.0 - 30.0 * (0.06 * f64::from(n)).cos())
+            .collect();
+        let error = |delay: Option<usize>| {
+            let compensator = Compensator::fixed(&model).unwrap();
+            let mut controller = Controller::new(Scheme {
+                compensator: Some(compensator),
+                delay,
+                ..Scheme::new(dt, (0.0, 150.0))
+            })
+            .unwrap();
+            let course = Course {
+                reference: &reference,
+                headings: &[],
+                ahead: 0,
+                events: &[],
+            };
+            let trace = run(&mut plant(), &mut controller, &course, Progress::NONE).unwrap();
+            let errors = trace.output.iter().zip(&reference).skip(300);
+            crate::loops::rms(errors.map(|(y, r)| y - r))
+        };
+        let default = error(None);
+        let aimed: Vec<f64> = (0..late + 3).map(|ahead| error(Some(ahead))).collect();
+        println!("late {late}: default {default:.4}, aimed 0, 1, … ahead {aimed:.4?}");
+        assert_eq!(default, aimed[late + 1]);
+        for (ahead, error) in aimed.iter().enumerate().filter(|(n, _)| *n != late + 1) {
+            assert!(
+                10.0 * default < *error,
+                "{late}, {ahead}: {default} {error}"
+            );
         }
     }
 }

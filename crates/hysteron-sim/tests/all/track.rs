@@ -371,3 +371,25 @@ fn twice_the_samples_track_alike() {
     // Model and gains are identified anew at each interval.
     assert!((0.7..1.43).contains(&(fine / coarse)), "{fine} {coarse}");
 }
+
+#[test]
+fn a_loop_aims_by_its_delay_and_else_by_that_of_the_model() {
+    let kinds = r#"controllers = ["inverse"]"#;
+    let found = |delay: &str| {
+        let text = text(&[RELAYS, "duration_s = 10", kinds, RELAYS_SINE]);
+        let text = text.replace("tolerance = 0.5", &format!("tolerance = 0.5{delay}"));
+        track(
+            &Scenario::parse(&text, Path::new("")).unwrap(),
+            Progress::NONE,
+        )
+        .unwrap()
+    };
+    let default = found("");
+    let due = 1 + default.model.delay().at(Some(0.01));
+    let drives = |delay: usize| found(&format!(", delay = {delay}")).traces[0].drive.clone();
+    assert_eq!(drives(due), default.traces[0].drive);
+    assert_ne!(drives(due + 1), default.traces[0].drive);
+    let refused = text(&[RELAYS, kinds, RELAYS_SINE]).replace("filter_s = 0.01", "delay = 1002");
+    let said = refusal(&refused);
+    assert!(said.contains("loop.delay"), "{said}");
+}

@@ -156,16 +156,17 @@ impl Session {
         let rows = from..count;
         let model = &fitted.model;
         let around = Surroundings {
-            time: recording.time.as_deref().filter(|_| model.is_timed()),
+            time: recording.time.as_deref().filter(|_| model.reads_time()),
             load: recording.load.as_deref().filter(|_| model.load.is_some()),
         };
+        let acting = model.acting(&recording.input, around)?;
         let around = Surroundings {
             time: around.time.map(|time| &time[rows.clone()]),
             load: around.load.map(|load| &load[rows.clone()]),
         };
         model.run_in(
             &mut state,
-            &recording.input[rows.clone()],
+            &acting[rows.clone()],
             around,
             &mut vec![0.0; rows.len()],
         )?;

@@ -13,7 +13,7 @@
 use super::trust::Trust;
 use crate::adapt::{Adaptive, AdaptiveLoad};
 use crate::error::{Error, Result};
-use crate::model::{Model, Policy, Sample, Sign, State, Wanted};
+use crate::model::{Delay, Model, Policy, Sample, Sign, State, Wanted};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
@@ -217,6 +217,16 @@ impl Compensator {
         match &self.kind {
             Kind::Shadow(shadow) => shadow.fixed.prediction,
             _ => self.prediction,
+        }
+    }
+
+    /// The dead time of the actuator, as its model has it.
+    pub(super) fn delay(&self) -> Delay {
+        match &self.kind {
+            Kind::Fixed { model, .. } => model.delay(),
+            Kind::Adaptive(adaptive) => adaptive.offline().delay(),
+            Kind::Load(adaptive) => adaptive.offline().delay(),
+            Kind::Shadow(shadow) => shadow.fixed.delay(),
         }
     }
 

@@ -7,7 +7,7 @@ use super::sensor::{Sensed, Sensor};
 use super::standstill::{Cause, Standstill};
 use super::{Gains, LoopStatus, Pid, Reading, Scheme};
 use crate::error::{Error, Result};
-use crate::model::Policy;
+use crate::model::{Policy, UnderWay};
 use hysteron_core::{Direction, Outcome};
 
 /// Samples within which a difference of the feedforward fades.
@@ -18,7 +18,8 @@ const FADE: u32 = 10;
 pub struct Reference {
     /// The output wanted now.
     pub output: f64,
-    /// The direction it takes next, if known. *Anticipate* needs it.
+    /// The direction that the output due takes next, if known: this one, or the one that the
+    /// inverse is told ahead. *Anticipate* needs it.
     pub heading: Option<Direction>,
 }
 
@@ -98,6 +99,12 @@ pub struct Controller {
     inner: Option<Pid>,
     output: Sensor,
     input: Sensor,
+    /// Samples until a drive moves the output.
+    due: usize,
+    /// The inputs under way: given, and not yet answered by the output.
+    under_way: UnderWay<Option<f64>>,
+    /// The input that the output now answers, where it is known.
+    acting: Option<f64>,
     /// The last input that was commanded.
     last: Option<f64>,
     /// Whether the drive is at its lower and at its upper limit.
@@ -128,6 +135,9 @@ impl Controller {
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
             output: sensor(),
             input: sensor(),
+            due: scheme.due(),
+            under_way: UnderWay::new(scheme.late()),
+            acting: None,
             last: None,
             held: (false, false),
             prediction: f64::NAN,
@@ -146,9 +156,11 @@ impl Controller {
     }
 
     /// As [`Controller::step`], for a reference that is known ahead: `next` has its values at the
-    /// samples after this one. The feedforward of a fixed model with a thermal body may then start
+    /// samples after this one. The inverse solves for the one that is due when the drive of this
+    /// sample is seen to act ([`Controller::due`]), or for the last one that it is told. The feedforward of a fixed model with a thermal body may then start
     /// to heat or to cool before they are due ([`crate::Inverse::step_ahead`]). Earlier targets are
-    /// missed by up to a tenth of the range for that. Other feedforward takes no notice of them.
+    /// missed by up to a tenth of the range for that. Other feedforward takes no notice of those
+    /// after the one that is due.
     ///
     /// As many samples as heating or cooling through the range takes are enough.
     ///
@@ -200,7 +212,7 @@ impl Controller {
             .try_for_each(|&output| refuse_not_finite(output))?;
         let (output, input, mut status) = self.read(reading);
         if let Some(compensator) = &mut self.scheme.compensator {
-            if let Some(input) = input.and_then(Sensed::value) {
+            if let Some(input) = self.acting {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
@@ -296,9 +308,8 @@ impl Controller {
             output,
             input: None,
         };
-        let (output, input, _) = self.read(reading);
-        let input = input.and_then(Sensed::value);
-        if let (Some(compensator), Some(input)) = (&mut self.scheme.compensator, input) {
+        let (output, ..) = self.read(reading);
+        if let (Some(compensator), Some(input)) = (&mut self.scheme.compensator, self.acting) {
             self.prediction = compensator.follow(input, Some(dt), output.value())?.0;
         }
         Ok(())
@@ -323,6 +334,13 @@ impl Controller {
     #[must_use]
     pub fn stuck_s(&self) -> Option<f64> {
         self.standstill.stuck_s()
+    }
+
+    /// Samples until a drive moves the output that is read ([`Scheme::delay`]): how far ahead the
+    /// inverse has to be told the reference.
+    #[must_use]
+    pub fn due(&self) -> usize {
+        self.due
     }
 
     /// Time between samples, s.
@@ -365,16 +383,26 @@ impl Controller {
                 .last
                 .map(|last| Sensed::New(self.input.filter(last, dt))),
         };
+        self.acting = self.arrives(input.and_then(Sensed::value));
         let mut status = LoopStatus::default();
         let mut output = reading.output;
         if output.is_finite() {
             status.stuck = self.stands_still(output, input);
-            status.rejected = !self.passes(output, input);
+            status.rejected = !self.passes(output);
             if status.stuck || status.rejected {
                 output = f64::NAN;
             }
         }
         (self.output.read(output, dt), input, status)
+    }
+
+    /// The input that the output answers now: the one given before the delay. Before all of them,
+    /// the actuator stood at the first.
+    fn arrives(&mut self, input: Option<f64>) -> Option<f64> {
+        match self.under_way.is_empty() && input.is_none() {
+            true => None,
+            false => self.under_way.push(input),
+        }
     }
 
     /// Whether the output stands still where it has to move.
@@ -399,10 +427,10 @@ impl Controller {
     }
 
     /// Whether a reading is no spike.
-    fn passes(&mut self, output: f64, input: Option<Sensed>) -> bool {
+    fn passes(&mut self, output: f64) -> bool {
         let (compensator, dt) = (self.scheme.compensator.as_ref(), self.dt);
-        let input = input.and_then(Sensed::value);
-        let expected = || match (compensator, input) {
+        let acting = self.acting;
+        let expected = || match (compensator, acting) {
             (Some(compensator), Some(input)) => compensator.expected_change(input, dt),
             _ => 0.0,
         };
@@ -468,7 +496,7 @@ impl Controller {
         let (mut feedforward, mut changed) = (scheme.bias, false);
         if let Some(compensator) = &mut scheme.compensator {
             // The target that is due when this drive is seen to act, and those after it.
-            let ahead = scheme.delay.min(next.len());
+            let ahead = self.due.min(next.len());
             let due = match ahead.checked_sub(1) {
                 Some(n) => next[n],
                 None => target.output,

@@ -15,25 +15,27 @@ pub struct Course<'a> {
     /// Samples beyond the end of this slice have none.
     pub headings: &'a [Option<Direction>],
     /// How many samples of the reference the controller is told ahead
-    /// ([`Controller::step_ahead`]); 0 for none.
+    /// ([`Controller::step_ahead`]). It is always told the one that is due ([`Controller::due`]).
     pub ahead: usize,
     /// Disturbances in order. Each acts before the sample with this index, counted from 0.
     pub events: &'a [(usize, Disturbance)],
 }
 
 impl Course<'_> {
-    /// The target of sample `n`, and the references after it that the controller is told.
+    /// The target of sample `n`, and the references after it that the controller is told: at least
+    /// up to the one that is `due` samples later ([`Controller::due`]).
     ///
     /// # Panics
     /// If `n` is not a sample of the reference.
     #[must_use]
-    pub fn target(&self, n: usize) -> (Reference, &[f64]) {
+    pub fn target(&self, n: usize, due: usize) -> (Reference, &[f64]) {
+        let next = &self.reference[n + 1..];
+        let at = n + due.min(next.len());
         let target = Reference {
             output: self.reference[n],
-            heading: self.headings.get(n).copied().flatten(),
+            heading: self.headings.get(at).copied().flatten(),
         };
-        let next = &self.reference[n + 1..];
-        (target, &next[..self.ahead.min(next.len())])
+        (target, &next[..self.ahead.max(due).min(next.len())])
     }
 }
 
@@ -60,7 +62,7 @@ pub fn run(
         }
         let truth = plant.truth();
         let reading = plant.read();
-        let (target, next) = course.target(n);
+        let (target, next) = course.target(n, controller.due());
         let action = controller.step_ahead(target, next, reading)?;
         plant.write(action.drive);
         plant.advance(controller.interval_s());

@@ -2,7 +2,7 @@
 
 use super::{Compensator, Gains};
 use crate::error::{Error, Result};
-use crate::model::Policy;
+use crate::model::{Delay, Policy};
 
 /// The inner loop, which brings the input (a temperature) to the commanded value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,8 +54,11 @@ pub struct Scheme {
     /// The fastest change of the drive, in its unit per second; `None` for no such limit.
     pub slew: Option<f64>,
     /// Samples until a drive moves the output that is read. So many samples ahead is the target
-    /// that the inverse solves for, as far as it is told ([`super::Controller::step_ahead`]).
-    pub delay: usize,
+    /// that the inverse solves for, as far as it is told ([`super::Controller::step_ahead`]), and
+    /// so late the model follows the inputs. The feedback compares what is read now with what is
+    /// wanted now. `None`: one sample, and the dead time of the model ([`crate::Delay`]). With an
+    /// inner loop the dead time alone: the input then comes to its command in its own time.
+    pub delay: Option<usize>,
 }
 
 impl Scheme {
@@ -78,8 +81,23 @@ impl Scheme {
             stuck_s: None,
             gate: None,
             slew: None,
-            delay: 0,
+            delay: None,
         }
+    }
+
+    /// Samples until a drive moves the output that is read. Without a model and a number, 0.
+    #[must_use]
+    pub fn due(&self) -> usize {
+        let next = usize::from(self.inner.is_none());
+        let of_model =
+            |compensator: &Compensator| next + compensator.delay().at(Some(self.interval_s));
+        let of_model = || self.compensator.as_ref().map_or(0, of_model);
+        self.delay.unwrap_or_else(of_model)
+    }
+
+    /// Samples by which the output answers an input that has acted up to a reading.
+    pub(super) fn late(&self) -> usize {
+        self.due().saturating_sub(usize::from(self.inner.is_none()))
     }
 
     /// Refuses settings that no loop can run with.
@@ -109,6 +127,8 @@ impl Scheme {
             self.gate.is_none_or(from_zero),
             "`gate` must be zero or above",
         )?;
+        let few = self.delay.is_none_or(|delay| delay <= Delay::MOST + 1);
+        require(few, "`delay` must be at most 1001 samples")?;
         require(self.bias.is_finite(), "`bias` must be a finite number")?;
         require(
             range(self.commands),

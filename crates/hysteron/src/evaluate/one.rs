@@ -77,6 +77,7 @@ pub(super) fn keeping(
 ) -> Result<Evaluation> {
     recording.check()?;
     check_units(model, recording)?;
+    let recording = &*model.delay().of_recording(recording);
     let (begin, estimated_from) = begin(model, recording, start)?;
     let (output_model, clipped) = model.run_over(&mut begin.clone(), recording)?;
     let forward = compare(&recording.output, &output_model);

@@ -115,6 +115,7 @@ pub enum Spacing {
 /// | `load_law` | auto | auto, shift, weights | what a load changes, if there is one |
 /// | `load_degree` | auto | 0 to 5 | order of the weights in the load; auto: by loads left out |
 /// | `spacing` | uniform; auto | uniform, auto | where the levels are |
+/// | `delay` | off (0); auto | auto, 0 to 1000 | dead time, in samples of the recording |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
 /// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
 /// | `dynamics` | off; auto | off, auto, lag, ring | a resonance, see [`Dynamics`] |
@@ -155,6 +156,8 @@ pub struct FitOptions {
     pub load_degree: Option<usize>,
     /// Where the levels are.
     pub spacing: Spacing,
+    /// Dead time of the actuator, in samples of the recordings.
+    pub delay: Choice<usize>,
     /// Number of creep terms.
     pub creep: Choice<usize>,
     /// Time constant of a lag of the whole, in seconds.
@@ -223,6 +226,7 @@ impl FitOptions {
             load_curves: None,
             load_degree: None,
             spacing: Spacing::Uniform,
+            delay: Choice::Fixed(0),
             creep: Choice::Fixed(0),
             lag: Choice::Fixed(0.0),
             dynamics: Dynamics::Off,

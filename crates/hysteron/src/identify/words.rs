@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::identify::fit::Fit;
 use crate::identify::options::{Auto, Choice, Dynamics, LoadLaw, Spacing};
-use crate::model::{Sign, Smooth, Solver, Start};
+use crate::model::{Delay, Sign, Smooth, Solver, Start};
 use hysteron_core::Operator;
 use serde::Serialize;
 use std::str::FromStr;
@@ -22,7 +22,7 @@ pub struct FitOption {
 }
 
 /// The options of a fit. `docs/options.md` has the same table.
-pub const FIT_OPTIONS: [FitOption; 19] = [
+pub const FIT_OPTIONS: [FitOption; 20] = [
     FitOption {
         name: "operator",
         default: "`mkp`",
@@ -104,6 +104,13 @@ pub const FIT_OPTIONS: [FitOption; 19] = [
         default: "`auto`",
         range: "`auto`, `uniform`",
         purpose: "where the levels are; `auto`: where the output moves, if that is better by 5 %",
+    },
+    FitOption {
+        name: "delay",
+        default: "`auto`",
+        range: "`auto`, `off`, 1 to 1000",
+        purpose: "with time: samples from an input to the output that answers it; `auto`: up to 7, if \
+                  that is better by 10 % on parts left out",
     },
     FitOption {
         name: "creep",
@@ -210,6 +217,9 @@ impl Fit<'_> {
             ("load_degree", text) => self.load_degree(number(text)?),
             ("spacing", "auto") => self.spacing(Spacing::Auto),
             ("spacing", "uniform") => self.spacing(Spacing::Uniform),
+            ("delay", "off") => self.delay(0),
+            ("delay", "auto") => self.delay(Auto),
+            ("delay", text) => self.delay(number(text).filter(|samples| *samples <= Delay::MOST)?),
             ("creep", "off") => self.creep(0),
             ("creep", "auto") => self.creep(Auto),
             ("creep", text) => self.creep(number(text)?),

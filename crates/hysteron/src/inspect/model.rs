@@ -30,6 +30,9 @@ pub struct ModelSummary {
     pub widest_loop_at: f64,
     /// The load that the weights depend on, if they do.
     pub load: Option<LoadSummary>,
+    /// Dead time of the actuator, s; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delay_s: Option<f64>,
     /// Confidence in the weights, if the fit estimated it.
     pub confidence: Option<ConfidenceSummary>,
 }
@@ -151,6 +154,7 @@ pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
             max: load.range().1,
             order: load.parts().len().saturating_sub(1),
         }),
+        delay_s: Some(model.delay().seconds()).filter(|seconds| *seconds > 0.0),
         confidence: model
             .fit
             .as_ref()

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::model::body::{FirstOrder, needs_time};
 use crate::model::constants::StageConstants;
+use crate::model::delay::Delay;
 use crate::model::load::LoadDependence;
 use crate::model::operators::{FittedStart, Operators, Plane};
 use crate::model::registration::Registration;
@@ -52,6 +53,8 @@ pub struct Model {
     pub(super) spacing: Vec<f64>,
     /// The constants of the stages behind the operators.
     pub(super) behind: StageConstants<f64>,
+    /// The dead time in front of all of it.
+    pub(super) delay: Delay,
     /// The state found before the first sample fitted.
     pub(super) start: Option<FittedStart>,
     /// How the model was obtained, if it was identified.
@@ -71,6 +74,7 @@ impl From<Operators> for Model {
             registration: Registration::default(),
             spacing: Vec::new(),
             behind: StageConstants::default(),
+            delay: Delay::NONE,
             start: None,
             fit: None,
         }

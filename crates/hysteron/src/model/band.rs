@@ -65,7 +65,8 @@ impl Model {
             return Err(Error::Fit(what.into()).remedied(remedy));
         };
         let output = self.simulate_in(input, surroundings)?;
-        let half = band.run(&self.start(), &self.seen(input, surroundings)?)?;
+        let acting = self.acting(input, surroundings)?;
+        let half = band.run(&self.start(), &self.seen(&acting, surroundings)?)?;
         Ok(ends(&output, &half))
     }
 }

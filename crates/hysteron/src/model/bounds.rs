@@ -56,6 +56,7 @@ impl Model {
     }
 
     /// The lower and the upper end of the bounds at each sample of `input`, from `state` on.
+    /// `input` is what acts, as for [`Model::run_in`].
     ///
     /// # Errors
     /// As [`Model::run_in`]; [`Error::Fit`] for a model that has no bounds.

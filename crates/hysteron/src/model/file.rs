@@ -2,8 +2,8 @@
 //!
 //! Version 2 adds the stages and the start: `load.curves`, `thermal.ambient`, `drive`, `spacing`,
 //! `creep`, `lag` and `start`. Version 3 adds `stages`: the constants of all other stages, as lists
-//! by the names that the stages declare. A model is written in the lowest version that has what it
-//! needs.
+//! by the names that the stages declare. Version 4 adds `delay`. A model is written in the lowest
+//! version that has what it needs.
 
 mod entries;
 
@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 
 pub(crate) const FORMAT: &str = "hysteron-model";
 /// The versions that can be read.
-const VERSIONS: std::ops::RangeInclusive<u64> = 1..=3;
+const VERSIONS: std::ops::RangeInclusive<u64> = 1..=4;
 
 /// The fields that show whether the rest of the file can be read.
 #[derive(Deserialize)]
@@ -139,6 +139,10 @@ impl Model {
             let problem = "it is the range of the drive of a thermal body, and there is none";
             return Err(fault("drive", problem.into()));
         }
+        if let Some(problem) = file.delay.fault() {
+            return Err(fault("delay", problem));
+        }
+        model.delay = file.delay;
         let listed = listed(file.creep, file.lag, file.stages)?;
         model.registration = Registration::of_constants(&listed);
         let behind = listed.stages().behind;
@@ -220,6 +224,7 @@ impl Model {
             creep: self.behind.terms(),
             lag: Some(self.behind.lag()).filter(|lag| *lag > 0.0),
             stages: self.others(),
+            delay: self.delay,
             start: self.start.clone(),
             fit,
         };

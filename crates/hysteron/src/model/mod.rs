@@ -2,7 +2,8 @@
 //! identified.
 //!
 //! `actuator` is the model. `operators` are its weighted operators; `body`, `load` and `constants`
-//! are those of the stages around them, and `stages` hands them to the core. `at_load` is the model
+//! are those of the stages around them, and `stages` hands them to the core. `delay` is the dead time
+//! in front. `at_load` is the model
 //! at one load. `state` moves a model sample by sample from its `start`, `surroundings` simulates it
 //! with time and load, and `inverse` inverts it (`policy` says how). `band` is the interval around
 //! the output, and `bounds` where it may really be. `file` reads and writes models; `summary`,
@@ -15,6 +16,7 @@ mod body;
 mod bounds;
 mod confidence;
 mod constants;
+mod delay;
 mod excitation;
 mod file;
 mod inverse;
@@ -41,6 +43,8 @@ pub(crate) use body::needs_time;
 pub use bounds::Bounds;
 pub use confidence::{Confidence, INTERVAL};
 pub use constants::{CreepTerm, StageConstants};
+pub use delay::Delay;
+pub(crate) use delay::UnderWay;
 pub use excitation::Excitation;
 #[cfg(feature = "data")]
 pub(crate) use file::{FORMAT, no_model};

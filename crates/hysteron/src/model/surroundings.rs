@@ -20,7 +20,9 @@ pub struct Surroundings<'a> {
 }
 
 impl Model {
-    /// The outputs for `input`, from the model's start ([`Model::start`]), for any model.
+    /// The outputs for `input`, from the model's start ([`Model::start`]), for any model. `input`
+    /// is what is given at each sample: it acts after the dead time of the model
+    /// ([`Model::delay`]), in samples of the time, or of its own interval where there is no time.
     ///
     /// ```
     /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Surroundings};
@@ -36,17 +38,37 @@ impl Model {
     /// # Errors
     /// As [`Model::run_in`].
     pub fn simulate_in(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
+        let acting = self.acting(input, surroundings)?;
         let mut output = vec![0.0; input.len()];
-        self.run_in(&mut self.start(), input, surroundings, &mut output)?;
+        self.run_in(&mut self.start(), &acting, surroundings, &mut output)?;
         Ok(output)
     }
 
-    /// The outputs for `input`, from the model's start ([`Model::start`]).
+    /// The outputs for `input`, from the model's start ([`Model::start`]), behind its dead time.
     ///
     /// # Errors
     /// As [`Model::simulate_in`], which is for models that need time or load.
     pub fn simulate(&self, input: &[f64]) -> Result<Vec<f64>> {
         self.simulate_in(input, Surroundings::default())
+    }
+
+    /// The inputs that act at each sample of a series, from those given there: behind the dead time
+    /// of the model ([`Model::delay`]). [`Model::run_in`] takes these.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for an input that is not finite, with its index, where there is a delay.
+    pub fn acting<'i>(
+        &self,
+        input: &'i [f64],
+        surroundings: Surroundings<'_>,
+    ) -> Result<Cow<'i, [f64]>> {
+        if self.delay().is_none() {
+            return Ok(Cow::Borrowed(input));
+        }
+        match input.iter().position(|x| !x.is_finite()) {
+            Some(index) => Err(CoreError::InputNotFinite { index }.into()),
+            None => Ok(self.delay().acting(input, surroundings.time)),
+        }
     }
 
     /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
@@ -78,7 +100,8 @@ impl Model {
     }
 
     /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
-    /// Returns how many inputs of the operators were clipped. The time step of the first sample is
+    /// Returns how many inputs of the operators were clipped. The inputs are those that act: a state
+    /// knows no dead time, so a caller shifts them ([`Model::acting`]). The time step of the first sample is
     /// zero, if `surroundings` does not tell the time before it.
     ///
     /// # Errors
@@ -119,7 +142,8 @@ impl Model {
     }
 
     /// The inputs as the operators see them, from the model's start on: behind the thermal body,
-    /// shifted by the load, behind the registration, on the uniform grid of the plane.
+    /// shifted by the load, behind the registration, on the uniform grid of the plane. The inputs are
+    /// those that act ([`Model::acting`]).
     ///
     /// # Errors
     /// As [`Model::run_in`].
@@ -146,7 +170,7 @@ impl<'a> Surroundings<'a> {
     #[must_use]
     pub fn from_recording(model: &Model, recording: &'a Recording) -> Self {
         Self {
-            time: recording.time.as_deref().filter(|_| model.is_timed()),
+            time: recording.time.as_deref().filter(|_| model.reads_time()),
             load: recording.load.as_deref().filter(|_| model.load.is_some()),
         }
     }

@@ -58,7 +58,7 @@ fn a_file_of_version_2_is_kept_to_the_last_digit() {
 fn wrong_fields_of_version_2_are_named() {
     let cases = [
         (r#""version": 2"#, r#""version": 1"#, "load.curves"),
-        (r#""version": 2"#, r#""version": 4"#, "version"),
+        (r#""version": 2"#, r#""version": 5"#, "version"),
         (
             "[50.0, 100.0, 200.0]",
             "[50.0, 200.0, 100.0]",

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::model::{Bounds, Inverse, Model, OperatorState, Policy};
 use crate::model::{Preview, Sample, State, Surroundings, Wanted};
 use crate::series::Headings;
-use hysteron_core::{Solution, StageState};
+use hysteron_core::{Solution, StageState, Status};
 use std::collections::VecDeque;
 
 /// The columns and options of an inversion.
@@ -36,7 +36,8 @@ pub struct Invert<'a> {
 }
 
 /// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
-/// wanted output, from `state`. For a model with a thermal body the input is the drive to hold since
+/// wanted output, from `state`. It is given early by the dead time of the model, so its status and
+/// the other columns are of a row so much later. For a model with a thermal body the input is the drive to hold since
 /// the row before, and `temperature_model` follows it. A model that knows how far it errs
 /// ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the output may
 /// really be with this input, also where the status is `ok`. Where the clock goes back the model
@@ -107,6 +108,7 @@ pub fn invert_table(
             preview,
             heated,
             around_output,
+            early: Early::default(),
             counts: Counts::default(),
         },
     };
@@ -136,10 +138,18 @@ struct Inverting<'m> {
 
 impl Work for Inverting<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
+        let delay = self.model.delay();
+        let early = &mut self.solving.early;
+        early.rows.get_or_insert(delay.on(self.samples.time(block)));
         let plain = self.model.is_plain();
         // Without bounds, which have a state of their own.
         let bounded = self.solving.around_output.is_some();
-        if plain && self.samples.are_plain() && self.headings.is_none() && !bounded {
+        if plain
+            && self.samples.are_plain()
+            && self.headings.is_none()
+            && !bounded
+            && delay.is_none()
+        {
             let targets = &block.numbers()[self.samples.value];
             if self.solving.series(targets, self.tolerance, cells).is_ok() {
                 return Ok(());
@@ -202,7 +212,20 @@ struct Solving<'m> {
     preview: Option<Preview<'m>>,
     heated: bool,
     around_output: Option<AroundOutput<'m>>,
+    early: Early,
     counts: Counts,
+}
+
+/// What is known of the dead time: each input is given early by it. So the solutions of the first
+/// rows come before the table, and the last one is held at its end.
+#[derive(Debug, Clone, Copy, Default)]
+struct Early {
+    /// Rows; `None` before the first one, whose clock tells how many.
+    rows: Option<usize>,
+    /// Solutions left out so far.
+    passed: usize,
+    /// The last solution.
+    last: Option<([f64; 4], usize, Status)>,
 }
 
 /// Follows the inputs found, and says where the output may really be.
@@ -271,6 +294,14 @@ impl Solving<'_> {
         while let Some((wanted, asked)) = self.preview.as_mut().and_then(Preview::next) {
             self.solve(wanted, asked, cells)?;
         }
+        let Early { passed, last, .. } = self.early;
+        (self.early.passed, self.early.last) = (0, None);
+        if let Some((numbers, count, status)) = last {
+            for _ in 0..passed {
+                cells.push(&numbers[..count]);
+                cells.words.push(status.name());
+            }
+        }
         Ok(())
     }
 
@@ -294,6 +325,12 @@ impl Solving<'_> {
             self.counts.half_width = Some(widest.max(half));
             numbers[count..count + 2].copy_from_slice(&[output - half, output + half]);
             count += 2;
+        }
+        let early = &mut self.early;
+        early.last = Some((numbers, count, status));
+        if early.passed < early.rows.unwrap_or_default() {
+            early.passed += 1;
+            return Ok(());
         }
         cells.push(&numbers[..count]);
         cells.words.push(status.name());

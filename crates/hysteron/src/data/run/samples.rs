@@ -66,6 +66,11 @@ impl Samples {
         })
     }
 
+    /// The times of a block, where there is a clock.
+    pub(super) fn time<'b>(&self, block: &'b Block) -> Option<&'b [f64]> {
+        self.clock.then(|| block.numbers()[0].as_slice())
+    }
+
     /// Whether samples are inputs alone, so that a model without stages may run over all at once.
     pub(super) fn are_plain(&self) -> bool {
         !self.clock && !self.loaded

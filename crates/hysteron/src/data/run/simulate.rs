@@ -6,7 +6,7 @@ use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
 use crate::error::Result;
-use crate::model::{Band, Model, OperatorState, State};
+use crate::model::{Band, Model, OperatorState, State, UnderWay};
 
 /// The columns and options of a simulation.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,7 @@ pub struct Simulate<'a> {
 }
 
 /// Copies `table` to `out` with an additional column `output_model`: the model's output, from
-/// `state`. Where the clock goes back it begins there again ([`Around::repair`]). With a band, the columns `output_low` and `output_high` follow. `out` is finished at the
+/// `state`, behind its dead time. Where the clock goes back it begins there again ([`Around::repair`]). With a band, the columns `output_low` and `output_high` follow. `out` is finished at the
 /// end. `progress` gets the bytes read.
 ///
 /// # Errors
@@ -50,6 +50,7 @@ pub fn simulate_table(
         state,
         samples,
         band,
+        under_way: None,
         counts: Counts::default(),
     };
     through(table, &columns, out, &names[..added], work, progress)
@@ -62,12 +63,16 @@ struct Simulating<'a> {
     state: State,
     samples: Samples,
     band: Option<(&'a Band, Vec<OperatorState>)>,
+    /// The inputs of the dead time; `None` before the first row, whose clock tells how many.
+    under_way: Option<UnderWay<f64>>,
     counts: Counts,
 }
 
 impl Work for Simulating<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
-        if self.model.is_plain() && self.samples.are_plain() && self.band.is_none() {
+        let delay = self.model.delay();
+        let plain = self.model.is_plain() && self.samples.are_plain() && delay.is_none();
+        if plain && self.band.is_none() {
             let input = &block.numbers()[self.samples.value];
             let outputs = &mut cells.numbers[0];
             outputs.resize(input.len(), 0.0);
@@ -79,14 +84,17 @@ impl Work for Simulating<'_> {
             return Ok(());
         }
         for row in 0..block.len() {
-            let Next { sample, anew } = self.samples.next(block, row)?;
+            let Next { mut sample, anew } = self.samples.next(block, row)?;
             if anew {
                 self.state.clone_from(&self.begin);
                 if let Some((band, states)) = &mut self.band {
                     *states = band.states(&self.begin)?;
                 }
+                self.under_way = None;
                 self.counts.anew += 1;
             }
+            let late = || UnderWay::new(delay.on(self.samples.time(block)));
+            sample.input = self.under_way.get_or_insert_with(late).push(sample.input);
             let step = self.model.step(&mut self.state, sample);
             let step = step.map_err(|error| self.samples.fault(block, row, &error))?;
             match step.clipped {

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::body::{FirstOrder, range_of};
 use crate::model::constants::CreepTerm;
+use crate::model::delay::Delay;
 use crate::model::load::{LoadCurves, LoadDependence, LoadPart};
 use crate::model::operators::FittedStart;
 use crate::model::summary::FitSummary;
@@ -37,6 +38,8 @@ pub(super) struct File {
     pub(super) lag: Option<f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) stages: BTreeMap<String, Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Delay::is_none")]
+    pub(super) delay: Delay,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) start: Option<FittedStart>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -46,6 +49,9 @@ pub(super) struct File {
 impl File {
     /// The version that is needed, and an entry that needs it.
     pub(super) fn needed(&self) -> (u64, &'static str) {
+        if !self.delay.is_none() {
+            return (4, "delay");
+        }
         if !self.stages.is_empty() {
             return (3, "stages");
         }

@@ -1,0 +1,276 @@
+//! Finds the dead time of an actuator: the shift by whole samples with which the operators predict
+//! best what was left out.
+//!
+//! Slow inputs do not tell a dead time from a lag of the same length, and either predicts the same.
+//! A shift that is still better at the longest one tried is taken for a lag, and left to it. A shift
+//! counts only if the output goes on for so long after its input has turned.
+
+use crate::error::{Error, Result};
+use crate::identify::options::FitOptions;
+use crate::identify::weights::problem::Problem;
+use crate::model::{Delay, Sign, Smooth};
+use crate::progress::Progress;
+use crate::recording::{Recording, gaps};
+use crate::series::{Turning, mean_and_deviation, usual_tolerance};
+
+/// Shifts tried, in samples.
+const LONGEST: usize = 8;
+
+/// A shift has to reduce the error on blocks left out by this share, as a ring and creep have to.
+const WORTH: f64 = 0.1;
+
+/// Each recording is divided into so many blocks; those with an odd number are left out first, then
+/// the others. As for a ring.
+const BLOCKS: usize = 6;
+
+/// Levels and smoothness of the models that compare shifts: enough to resolve a loop, and few
+/// enough to fit eighteen models.
+const LEVELS: usize = 12;
+const SMOOTH: Smooth = Smooth {
+    along: 0.0,
+    across: 1e-6,
+};
+
+/// So many reversals at least tell whether the output goes on after them, and so many standard
+/// errors are no chance.
+const REVERSALS: usize = 3;
+const CHANCE: f64 = 3.0;
+
+/// Samples of each recording that are looked at.
+const LOOKED_AT: usize = 20_000;
+
+/// Samples stand at equal distances where so many of the steps are within a tenth of the median.
+const EVEN: f64 = 0.95;
+const NEAR: f64 = 0.1;
+
+/// The interval of the first recording, s; `None` where its samples do not stand at equal
+/// distances.
+pub(super) fn interval(recordings: &[Recording]) -> Option<f64> {
+    let time = recordings.first()?.time.as_deref()?;
+    let (median, _) = gaps(time)?;
+    let steps = time.windows(2).map(|pair| pair[1] - pair[0]);
+    let near = steps.filter(|step| (step - median).abs() <= NEAR * median);
+    let even = near.count() as f64 >= EVEN * (time.len() - 1) as f64;
+    (even && median > 0.0).then_some(median)
+}
+
+/// The delay that was asked for.
+///
+/// # Errors
+/// [`Error::Fit`] where the samples are of no interval, and as [`Delay::new`].
+pub(super) fn fixed(samples: usize, recordings: &[Recording]) -> Result<Delay> {
+    match (samples, interval(recordings)) {
+        (0, _) => Ok(Delay::NONE),
+        (_, Some(interval)) => Delay::new(samples, interval),
+        (_, None) => Err(Error::Fit(
+            "a delay is in samples of an interval: it needs time, with samples at equal distances"
+                .into(),
+        )),
+    }
+}
+
+/// The delay with which the operators predict parts of the recordings that were left out clearly
+/// better than without; none where the recordings have no time or a load.
+pub(super) fn find(
+    recordings: &[Recording],
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<Delay> {
+    let Some(interval) = interval(recordings) else {
+        return Ok(Delay::NONE);
+    };
+    let enough = |recording: &Recording| recording.len() > 2 * BLOCKS * LONGEST;
+    let loaded = recordings.iter().any(|recording| recording.load.is_some());
+    if loaded || !recordings.iter().all(enough) {
+        return Ok(Delay::NONE);
+    }
+    let looked_at: Vec<Recording> = recordings.iter().map(beginning).collect();
+    let options = FitOptions {
+        levels: LEVELS,
+        smooth: options.smooth.at_least(SMOOTH),
+        bootstrap: 0,
+        ..options.clone()
+    };
+    let (mut errors, mut sign) = ([0.0; LONGEST + 1], Sign::Positive);
+    for (samples, error) in errors.iter_mut().enumerate() {
+        progress.tell("delay", samples as f64 / LONGEST as f64)?;
+        let shifted = Delay::new(samples, interval)?.of_recordings(&looked_at);
+        (*error, sign) = squares_left_out(&shifted, &options, progress)?;
+    }
+    let best = (0..=LONGEST).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
+    let worth = |&samples: &usize| {
+        let least = (1.0 - WORTH).powi(2) * errors[0];
+        samples < LONGEST && errors[samples] < least && goes_on(&looked_at, sign, samples)
+    };
+    match best.filter(worth) {
+        Some(samples) => Delay::new(samples, interval),
+        None => Ok(Delay::NONE),
+    }
+}
+
+/// Whether the output goes on for so many `samples` after its input has turned, on the mean over
+/// all reversals and beyond chance. Hysteresis alone turns the output at once, or holds it. So this
+/// tells a dead time from a loop that is as much wider, which at one rate predicts the same.
+fn goes_on(recordings: &[Recording], sign: Sign, samples: usize) -> bool {
+    let mut ways = Vec::new();
+    for Recording { input, output, .. } in recordings {
+        let mut turning = Turning::new(usual_tolerance(input));
+        let turns = input.iter().filter_map(|&x| turning.push(x));
+        let mut last = 0;
+        for (turn, _) in turns {
+            let rises = (input[turn] - input[last]).signum() * sign.factor();
+            last = turn;
+            if let Some(after) = output.get(turn + samples) {
+                ways.push(rises * (after - output[turn]));
+            }
+        }
+    }
+    let (mean, deviation) = mean_and_deviation(&ways);
+    ways.len() >= REVERSALS && mean > CHANCE * deviation / (ways.len() as f64).sqrt()
+}
+
+/// The beginning of a recording, as much as is looked at.
+fn beginning(recording: &Recording) -> Recording {
+    let head = |values: &Vec<f64>| values[..values.len().min(LOOKED_AT)].to_vec();
+    Recording {
+        time: recording.time.as_ref().map(head),
+        input: head(&recording.input),
+        output: head(&recording.output),
+        load: None,
+        ..recording.clone()
+    }
+}
+
+/// Sum of the squared errors over the blocks left out, and the sign of the output; without the beginning that no shift knows.
+fn squares_left_out(
+    recordings: &[Recording],
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<(f64, Sign)> {
+    let mut problem = Problem::new(recordings, options)?;
+    let places: Vec<(usize, usize)> = recordings
+        .iter()
+        .flat_map(|r| (0..r.len()).map(|n| (n, n * BLOCKS / r.len())))
+        .collect();
+    let (mut squares, mut sign) = (0.0, Sign::Positive);
+    for parity in 0..2 {
+        let kept = places
+            .iter()
+            .map(|(_, block)| f64::from(block % 2 != parity));
+        let kept: Vec<f64> = kept.collect();
+        let fitted = problem.solve(Some(&kept), progress)?;
+        sign = fitted.sign;
+        let modelled = problem.predict(&fitted.solution)?;
+        for (sample, h) in modelled.into_iter().enumerate() {
+            if kept[sample] == 0.0 && places[sample].0 >= LONGEST {
+                squares += (problem.target(fitted.sign, sample) - h).powi(2);
+            }
+        }
+    }
+    Ok((squares, sign))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::identify::{Fit, Spacing};
+    use crate::model::Model;
+    use hysteron_core::{Operator, Plane};
+
+    /// Swings of another size each time, and what a model answers `late` samples later.
+    fn recorded(late: usize, noise: f64) -> Recording {
+        let plane = Plane::new(0.0, 100.0, 15).unwrap();
+        let model = Model::new(Operator::Mkp, plane, vec![1.0; 120], 3.0, Sign::Negative).unwrap();
+        let swing = |n: usize| {
+            let phase = 0.1 * n as f64;
+            50.0 - (50.0 - 0.012 * n as f64) * phase.cos()
+        };
+        let input: Vec<f64> = (0..3000).map(swing).collect();
+        let interval = 0.004;
+        let time = (0..3000).map(|n| interval * n as f64).collect();
+        let delay = Delay::new(late, interval).unwrap();
+        let mut output = model.simulate(&delay.acting(&input, None)).unwrap();
+        for (n, y) in output.iter_mut().enumerate() {
+            let turns = (n as f64 * 12.9898).sin() * 43758.5453;
+            *y += noise * (turns - turns.floor() - 0.5);
+        }
+        Recording {
+            time: Some(time),
+            ..Recording::new(input, output).unwrap()
+        }
+    }
+
+    #[test]
+    fn a_known_delay_is_found_with_and_without_noise() {
+        for (late, noise) in (0..LONGEST).flat_map(|late| [(late, 0.0), (late, 0.3)]) {
+            let recording = [recorded(late, noise)];
+            let found = find(&recording, &FitOptions::plain(), Progress::NONE).unwrap();
+            assert_eq!(found.samples(), late, "noise {noise}");
+        }
+    }
+
+    #[test]
+    fn a_loop_finer_than_the_grid_is_no_delay() {
+        // Triangles of one rate: a shift by n samples widens the loop by 2 n.
+        let plane = Plane::new(0.0, 100.0, 150).unwrap();
+        let near = |(i, j): (usize, usize)| f64::from(u8::from(j - i < 8));
+        let weights = hysteron_core::operators(150).map(near).collect();
+        let model = Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive).unwrap();
+        let mut input = Vec::new();
+        for size in (2..20).rev() {
+            let top = 5 * size;
+            input.extend((0..top).chain((1..=top).rev()).map(f64::from));
+        }
+        let output = model.simulate(&input).unwrap();
+        let recording = Recording {
+            time: Some((0..input.len()).map(|n| 0.01 * n as f64).collect()),
+            ..Recording::new(input, output).unwrap()
+        };
+        let found = find(&[recording], &FitOptions::plain(), Progress::NONE).unwrap();
+        assert!(found.is_none(), "{found:?}");
+    }
+
+    #[test]
+    fn what_is_later_than_tried_is_no_delay() {
+        let recording = [recorded(LONGEST + 4, 0.0)];
+        let found = find(&recording, &FitOptions::plain(), Progress::NONE).unwrap();
+        assert!(found.is_none(), "{found:?}");
+    }
+
+    #[test]
+    fn a_model_keeps_its_delay_and_predicts_with_it() {
+        let recording = recorded(2, 0.0);
+        let plain = || {
+            Fit::new()
+                .levels(15)
+                .range(0.0, 100.0)
+                .spacing(Spacing::Uniform)
+                .smooth(0.0)
+                .bootstrap(0)
+        };
+        let found = plain().run(&recording).unwrap();
+        let told = plain().delay(2).run(&recording).unwrap();
+        assert_eq!(
+            found.delay(),
+            Delay::new(2, found.delay().seconds() / 2.0).unwrap()
+        );
+        assert_eq!(found, told);
+        let without = plain().delay(0).run(&recording).unwrap();
+        let rmse = |model: &Model| crate::evaluate(model, &recording).unwrap().forward.rmse;
+        // The model is as the plant, so only its ridge is left.
+        assert!(rmse(&found) < 0.01 * rmse(&without));
+        assert_eq!(rmse(&found), found.fit.as_ref().unwrap().rmse);
+        assert_eq!(Model::from_json(&found.to_json()).unwrap(), found);
+    }
+
+    #[test]
+    fn without_time_there_is_no_delay() {
+        let mut recording = recorded(2, 0.0);
+        recording.time = None;
+        let model = Fit::new().levels(8).bootstrap(0).run(&recording).unwrap();
+        assert!(model.delay().is_none());
+        let refused = Fit::new().delay(2).run(&recording).unwrap_err();
+        assert!(refused.to_string().contains("needs time"), "{refused}");
+    }
+}
