@@ -330,6 +330,7 @@ class Controller:
         square_root: bool = False,
         filter_s: float = 0.0,
         stuck_s: float | None = None,
+        delay: int | None = None,
     ) -> Controller: ...
     @property
     def interval_s(self) -> float: ...
@@ -477,6 +478,8 @@ class Model:
     def confidence(self) -> Confidence | _MaybeNone: ...
     @property
     def verdict(self) -> Verdict | _MaybeNone: ...
+    @property
+    def delay_s(self) -> float: ...
     @property
     def thermal(self) -> ThermalBody | _MaybeNone: ...
     @property
@@ -897,6 +900,7 @@ def fit(
     load_law: Literal["auto", "shift", "weights"] = "auto",
     load_degree: int | Literal['auto'] = "auto",
     spacing: Literal["auto", "uniform"] = "auto",
+    delay: int | Literal['auto', 'off'] = "auto",
     creep: int | Literal['auto', 'off'] = "off",
     lag: float | Literal['auto', 'off'] = "off",
     dynamics: Literal["auto", "off", "lag", "ring"] = "auto",
@@ -930,6 +934,7 @@ def fit_fleet(
     load_law: Literal["auto", "shift", "weights"] = "auto",
     load_degree: int | Literal['auto'] = "auto",
     spacing: Literal["auto", "uniform"] = "auto",
+    delay: int | Literal['auto', 'off'] = "auto",
     creep: int | Literal['auto', 'off'] = "off",
     lag: float | Literal['auto', 'off'] = "off",
     dynamics: Literal["auto", "off", "lag", "ring"] = "auto",

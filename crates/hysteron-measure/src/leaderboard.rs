@@ -4,6 +4,7 @@
 //! `--splits FOLDER` writes the tasks as tables instead. `--entry NAME=FOLDER` adds the predictions
 //! of another method as a column. `--only WORD` runs the rows whose name has that word.
 
+mod cell;
 mod entry;
 mod methods;
 mod pairs;
@@ -12,6 +13,7 @@ mod prandtl;
 mod splits;
 
 use crate::result::Result;
+use cell::number;
 use entry::Entry;
 use hysteron::range;
 use methods::Method;
@@ -165,12 +167,6 @@ fn score(set: &Set, predict: impl Fn(&Split) -> Result<Option<Vec<f64>>>) -> Opt
         rmse,
         percent: 100.0 * rmse / (high - low),
     })
-}
-
-/// Three significant digits, but none behind the point from 100 on.
-fn number(percent: f64) -> String {
-    let digits = 2 - percent.max(1e-3).log10().floor() as i32;
-    format!("{percent:.*}", digits.clamp(0, 4) as usize)
 }
 
 /// The sentence behind `NAME:` in the file of reasons.

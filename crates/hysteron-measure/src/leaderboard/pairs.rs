@@ -1,8 +1,9 @@
 //! Every recording of one valve predicts every other: a table of pairs.
 
+use super::cell::number;
 use super::methods::Method;
 use super::prandtl::Shape;
-use super::{number, splits};
+use super::splits;
 use crate::result::Result;
 use hysteron::{Recording, RivalKind, range};
 use std::path::Path;

@@ -198,3 +198,25 @@ impl Model {
         }
     }
 }
+
+impl Model {
+    /// The same model with a dead time.
+    #[must_use]
+    pub fn with_delay(mut self, delay: Delay) -> Self {
+        self.delay = delay;
+        self
+    }
+
+    /// The dead time of the actuator.
+    #[must_use]
+    pub fn delay(&self) -> Delay {
+        self.delay
+    }
+
+    /// Whether a time of the samples changes the outputs of a series: a model that depends on time
+    /// needs it, and a dead time has another number of samples on another clock.
+    #[must_use]
+    pub fn reads_time(&self) -> bool {
+        self.is_timed() || !self.delay.is_none()
+    }
+}

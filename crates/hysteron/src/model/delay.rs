@@ -1,7 +1,6 @@
 //! The dead time of an actuator: how long an input takes until the output begins to answer it.
 
 use crate::error::{Error, Result};
-use crate::model::Model;
 use crate::recording::{Recording, gaps};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -208,28 +207,6 @@ impl<T: Clone> UnderWay<T> {
             }
             None => value,
         }
-    }
-}
-
-impl Model {
-    /// The same model with a dead time.
-    #[must_use]
-    pub fn with_delay(mut self, delay: Delay) -> Self {
-        self.delay = delay;
-        self
-    }
-
-    /// The dead time of the actuator.
-    #[must_use]
-    pub fn delay(&self) -> Delay {
-        self.delay
-    }
-
-    /// Whether a time of the samples changes the outputs of a series: a model that depends on time
-    /// needs it, and a dead time has another number of samples on another clock.
-    #[must_use]
-    pub fn reads_time(&self) -> bool {
-        self.is_timed() || !self.delay.is_none()
     }
 }
 

@@ -1,7 +1,6 @@
 //! What is behind an error.
 
 use super::parts::{ErrorPart, PartKind, error_parts};
-use super::{Basis, OUTSIDE};
 use crate::evaluate::Evaluation;
 use crate::model::FitSummary;
 use crate::recording::Recording;
@@ -43,6 +42,8 @@ pub enum Cause {
     },
 }
 
+/// More than this share of the inputs outside the plane, and the model is not for this recording.
+pub(super) const OUTSIDE: f64 = 0.2;
 /// A part of this share is worth a sentence.
 const WORTH: f64 = 0.25;
 /// From this share of noise on, in the squared error, noise is what is behind it.
@@ -91,19 +92,25 @@ impl Cause {
     }
 }
 
-/// What the record of a fit says.
-pub(super) fn of_record(fit: &FitSummary, basis: Basis) -> Vec<Cause> {
+/// What the record of a fit says, of an error in `percent` beside that of the best `rival`.
+pub(super) fn of_record(
+    fit: &FitSummary,
+    percent: Option<f64>,
+    rival: Option<&(String, f64)>,
+    held_out: bool,
+) -> Vec<Cause> {
     let mut causes = Vec::new();
-    let (_, _, percent, rival) = super::tested(fit);
     if let (Some((name, rival)), Some(percent)) = (rival, percent)
-        && rival < percent
+        && *rival < percent
     {
-        let percent = rival;
-        causes.push(Cause::Rival { name, percent });
+        causes.push(Cause::Rival {
+            name: name.clone(),
+            percent: *rival,
+        });
     }
     if let Some(confidence) = &fit.confidence
         && confidence.branches < FEW
-        && basis != Basis::HeldOut
+        && !held_out
     {
         let branches = confidence.branches;
         causes.push(Cause::FewBranches { branches });

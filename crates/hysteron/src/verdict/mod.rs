@@ -122,8 +122,6 @@ const GOOD: f64 = 1.0;
 const OF_NOISE: f64 = 1.5;
 /// Errors up to this, in percent, are usable.
 const USABLE: f64 = 5.0;
-/// More than this share of the inputs outside the plane, and the model is not for this recording.
-pub(crate) const OUTSIDE: f64 = 0.2;
 /// The rival of an evaluation.
 const LINE: &str = "a straight line fitted to this very recording";
 /// The inverse of so many samples is tested. More would cost as much as some fits.
@@ -149,8 +147,8 @@ impl Verdict {
             percent,
             noise: fit.confidence.as_ref().map_or(0.0, |found| found.sensor),
             inverse: None,
+            causes: cause::of_record(fit, percent, rival.as_ref(), basis == Basis::HeldOut),
             rival,
-            causes: cause::of_record(fit, basis),
             worst: None,
             input: model.input.clone(),
             output: model.output.clone(),
@@ -293,7 +291,7 @@ impl Verdict {
         let outside = self
             .causes
             .iter()
-            .any(|cause| matches!(cause, Cause::Outside { share } if *share > OUTSIDE));
+            .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
         self.grade = match (by_error, rival_wins) {
             _ if outside => Grade::Poor,
             (Grade::Good, true) => Grade::Usable,

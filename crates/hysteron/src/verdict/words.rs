@@ -1,7 +1,8 @@
 //! A verdict in sentences.
 
+use super::cause::OUTSIDE;
 use super::parts::{ErrorPart, PartKind};
-use super::{Basis, Cause, Grade, OUTSIDE, Verdict};
+use super::{Basis, Cause, Grade, Verdict};
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
 use std::fmt;
