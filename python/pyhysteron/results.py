@@ -53,7 +53,6 @@ __all__ = [
     "Median",
     "ModelSummary",
     "OutcomeCounts",
-    "Stuck",
     "Outlier",
     "Preparation",
     "RateDependence",
@@ -72,10 +71,13 @@ __all__ = [
     "Smoothed",
     "Snapshot",
     "Spikes",
+    "Stuck",
     "ThermalBody",
     "TraceTable",
     "Uncertain",
     "Validation",
+    "Verdict",
+    "Worst",
 ]
 
 _Array = NDArray[np.float64]
