@@ -260,9 +260,13 @@ impl<T: Real> Trail<T> {
         travel = travel.min(part(PIECE));
         self.lately
             .take(moving, travel, range * T::from_index(LATELY));
-        let band = self.lately.size().max(part(FAR[1])) / T::from_index(STILL);
-        run.take(reading, travel, self.lately.size());
-        if run.spans[1].size() >= band || run.spans[2].size() >= rest {
+        let lately = self.lately.size().max(run.spans[0].size());
+        let band = lately.max(part(FAR[1])) / T::from_index(STILL);
+        let before = run.spans[1].size();
+        run.take(reading, travel, lately);
+        // A band that gets narrower ends no run: only a move does.
+        let leaves = run.spans[1].size() > before && run.spans[1].size() >= band;
+        if leaves || run.spans[2].size() >= rest {
             self.longest = self.longest.max(run.travel);
             *run = Run::begin(reading);
             self.follows = false;

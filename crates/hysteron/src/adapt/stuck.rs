@@ -120,8 +120,11 @@ pub(super) fn at_the_end(
             true,
         );
     }
-    match watch.stuck() {
-        Some(_) => 0,
-        None => watch.still_at_the_end().map_or(0, |count| count as usize),
+    if watch.stuck().is_some() || recording.len() < 2 {
+        return 0;
     }
+    // Noise may begin the run anew after the freeze: its readings tell where that was.
+    let first = || began(&recording.output, fixed, recording.len() - 1);
+    let still = |count: u32| (count as usize).max(recording.len() - first());
+    watch.still_at_the_end().map_or(0, still)
 }
