@@ -200,6 +200,10 @@ pub fn adapt(
             learned.extend(adaptive.run(input, output, Progress::new(&told))?);
         }
     }
+    // One that found a channel still has undone what it learned there, the samples before too.
+    if adaptive.stuck().is_some() {
+        last = Some((adaptive.model()?, adaptive.shares()));
+    }
     let (last, shares) = last.ok_or_else(no_samples)?;
     Learned {
         offline,

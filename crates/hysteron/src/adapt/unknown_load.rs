@@ -68,7 +68,8 @@ pub(super) fn adapt(
             learned.push(adaptive.step(sample, recording.output[n])?);
         }
     }
-    if unsure == 0 {
+    // One that found a channel still has undone what it learned there.
+    if unsure == 0 || adaptive.stuck().is_some() {
         last = adaptive;
     }
     progress.tell("adaptation", 1.0)?;
