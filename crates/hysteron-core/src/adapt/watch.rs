@@ -20,8 +20,10 @@ const STILL: usize = 5;
 /// A run proves a channel still where the other one travelled this many eighths of its span. There
 /// and back are sixteen; two are left for the way that the channel made in the band before it froze.
 const CYCLE: usize = 14;
-/// At the end of the readings this many eighths are enough, if no run of the live channel was two
-/// thirds as long.
+/// More than that is asked of a channel that rested for long before and moved again, but at most this
+/// many eighths, two cycles.
+const MOST: usize = 32;
+/// At the end of the readings this many eighths are enough, for a channel that did not rest before.
 const END: usize = 6;
 /// A piece ends where the moving channel has travelled the model's range divided by this.
 const PIECE: usize = 2;
@@ -193,11 +195,12 @@ impl<T: Real> Watch<T> {
     /// before did its output stay within such a band over two thirds of this way.
     #[must_use]
     pub fn still_at_the_end(&self) -> Option<u32> {
-        let Trail { run, longest, .. } = &self.output;
-        let run = run.as_ref()?;
+        // One that was never seen to move says nothing of how it would rest.
+        let past = self.output.longest > T::ZERO;
+        let run = self.output.run.as_ref().filter(|_| past)?;
         let part = |parts: usize| self.range / T::from_index(parts);
         let lately = self.output.lately.size().max(run.spans[0].size());
-        let enough = (lately * eighths(END)).max(*longest + *longest * T::HALF);
+        let enough = (lately * eighths(END)).max(self.output.beyond());
         let far = run.spans[0].size() >= part(FAR[1]).max(lately * T::HALF);
         let wide = run.spans[2].size() >= self.width / T::from_index(WIDE);
         (run.travel >= enough && far && wide && !run.follows()).then_some(run.readings)
@@ -292,16 +295,23 @@ impl<T: Real> Trail<T> {
         self.piece = Some(Piece::begin(reading));
     }
 
+    /// What no run of a channel that moved again came near to: half as long again as the longest. A
+    /// plant that is shifted may rest where the model moves, time and again.
+    fn beyond(&self) -> T {
+        self.longest + self.longest * T::HALF
+    }
+
     /// Whether the run proves the channel still: the other one, whose span counts as at least
     /// `least`, went there and back in `few` readings or more, and the input moved by `wide`.
     ///
     /// A step of a small output, as of a load, may hide for one cycle that it follows.
     fn is_still(&mut self, range: T, least: T, wide: T, few: u32) -> bool {
+        let beyond = self.beyond();
         let Some(run) = &mut self.run else {
             return false;
         };
-        let span = self.lately.size().max(run.spans[0].size());
-        let cycle = span.max(least) * eighths(CYCLE);
+        let span = self.lately.size().max(run.spans[0].size()).max(least);
+        let cycle = (span * eighths(CYCLE)).max(beyond.min(span * eighths(MOST)));
         let far = run.spans[0].size() >= range / T::from_index(FAR[1]);
         if run.travel < cycle || run.readings < few || !far || run.spans[2].size() < wide {
             return false;
