@@ -25,6 +25,9 @@ const ONE_SESSION: usize = 3;
 /// of a recording the input has jumped back to where it began, and the output is still the old one.
 const SWITCHED_ON: f64 = 0.025;
 
+/// What of an error counts in a mean; `None` where it does not.
+type Counted = fn(&Error) -> Option<f64>;
+
 /// The error of a method on one pair, in percent of the range of the outputs.
 struct Error {
     in_session: bool,
@@ -59,7 +62,7 @@ pub fn table(folder: &Path) -> Result<()> {
             row(&pair.join(", "), last.map(|error| error.whole));
         }
     }
-    let means: [(&str, fn(&Error) -> Option<f64>); 4] = [
+    let means: [(&str, Counted); 4] = [
         ("mean of all", |e| Some(e.whole)),
         ("mean within one session", |e| {
             e.in_session.then_some(e.whole)
