@@ -23,8 +23,8 @@ pub(super) struct Run<T> {
     pub(super) readings: u32,
     first: [T; 2],
     last: [T; 3],
-    /// Sums, but for a count, over the way of the moving channel: of 1, of both channels, of their squares and of
-    /// their product. So a rest does not weigh more than a move.
+    /// Sums, but for a count, over the way of the moving channel: of 1, of both channels, of their
+    /// squares and of their product. So a rest does not weigh more than a move.
     way: T,
     count: T,
     sums: [T; 2],

@@ -6,7 +6,8 @@
 //! stretch over which the measured output stays within a band, a part of the span that the expected
 //! one had lately. A plant that moves leaves the band again and again, and a new run begins. A
 //! frozen one stays, and the run lasts until the expected output has been there and back. A load, a
-//! drift or a model that errs change the spans; a channel that stands still takes one to nearly zero.
+//! drift or a model that errs change the spans; a channel that stands still takes one to nearly
+//! zero.
 //!
 //! The output of a live plant may be that small too. But then it follows the expected one: the two
 //! are correlated over the run. The noise of a frozen channel is not.
@@ -18,26 +19,29 @@ use crate::scalar::Real;
 /// The band of a run is the other channel's span divided by this.
 const STILL: usize = 5;
 /// A run proves a channel still where the other one travelled this many eighths of its span. There
-/// and back are sixteen; two are left for the way that the channel made in the band before it froze.
+/// and back are sixteen; two are left for the way that the channel made in the band before it
+/// froze.
 const CYCLE: usize = 14;
-/// More than that is asked of a channel that rested for long before and moved again, but at most this
-/// many eighths, two cycles.
+/// More than that is asked of a channel that rested for long before and moved again, but at most
+/// this many eighths, two cycles.
 const MOST: usize = 32;
 /// At the end of the readings this many eighths are enough, for a channel that did not rest before.
 const END: usize = 6;
 /// A piece ends where the moving channel has travelled the model's range divided by this.
 const PIECE: usize = 2;
-/// Readings in a piece, in a run of the output, and in one of the input, at least: fewer do not show
-/// a span. The measured output moves in the last of them, and a few wrong readings move it far.
+/// Readings in a piece, in a run of the output, and in one of the input, at least: fewer do not
+/// show a span. The measured output moves in the last of them, and a few wrong readings move it
+/// far.
 const READINGS: [u32; 3] = [4, 10, 16];
-/// An input that moves by less than the plane's width divided by this may miss the part of the plane
-/// in which a shifted plant moves.
+/// An input that moves by less than the plane's width divided by this may miss the part of the
+/// plane in which a shifted plant moves.
 const WIDE: usize = 2;
 /// Moves below the range divided by this are noise and no travel.
 const NOISE: usize = 16;
 /// Spans below the range divided by this say nothing: of a piece, and of a run.
 const FAR: [usize; 2] = [8, 4];
-/// The span of a channel lately is that over the last ranges of travel: from so many to twice as many.
+/// The span of a channel lately is that over the last ranges of travel: from so many to twice as
+/// many.
 const LATELY: usize = 1;
 
 /// A channel of the plant.
@@ -88,9 +92,9 @@ pub enum Watched {
 
 /// Notices a channel that stands still while the other one moves. Takes constant time and memory.
 ///
-/// An [`crate::Estimator`] has its own. Anything else that learns may use one: where a piece ends it
-/// sets aside what it has learned so far, and where a channel is stuck it returns to what it had set
-/// aside before the last piece that was alive.
+/// An [`crate::Estimator`] has its own. Anything else that learns may use one: where a piece ends
+/// it sets aside what it has learned so far, and where a channel is stuck it returns to what it had
+/// set aside before the last piece that was alive.
 ///
 /// ```
 /// use hysteron_core::{Channel, Reading, Watch, Watched};
@@ -244,8 +248,8 @@ struct Ended {
 }
 
 impl<T: Real> Trail<T> {
-    /// Takes a reading of the channel that moves, of the one that may be still, and of the position.
-    /// A run ends also where the position moves by `rest`.
+    /// Takes a reading of the channel that moves, of the one that may be still, and of the
+    /// position. A run ends also where the position moves by `rest`.
     fn look(&mut self, reading: [T; 3], range: T, rest: T) -> Option<Ended> {
         let part = |parts: usize| range / T::from_index(parts);
         let moving = reading[0];
