@@ -2,8 +2,6 @@
 #include "hysteron_mcu_guards.h"
 #include "hysteron_mcu_internal.h"
 
-#define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
-
 /* Number of running sums of a long sum. The rounding of the library depends on it. */
 #define LANES 8u
 

@@ -96,18 +96,45 @@ typedef struct {
     uint32_t refused, agreeing; /* readings in a row */
 } hys_gate;
 
-/* A stretch in which a channel travelled half of the range: lowest and highest values of this
- * channel, of the one it is compared with, and of the position. */
+/* The lowest and the highest of some readings. */
 typedef struct {
-    hys_real low[3], high[3], travel;
-    uint32_t readings;      /* 0 before the first */
-    unsigned char begun;
+    hys_real low, high;
+} hys_span;
+
+/* The span of a channel over its way lately: of the present stretch and of the one before. */
+typedef struct {
+    hys_span spans[2];
+    hys_real travel;
+} hys_lately;
+
+/* A stretch over which one channel stayed within a band. A reading is the channel that moves, the
+ * one that may be still, and the position. */
+typedef struct {
+    hys_span spans[3];
+    hys_real travel;        /* of the moving channel */
+    hys_real first[2], last[3];
+    /* Sums, but for a count, over the way of the moving channel: of 1, of both channels, of their
+     * squares and of their product. All counted from the first reading. */
+    hys_real way, count, sums[2], squares[2], product;
+    uint32_t readings;
+} hys_run;
+
+/* A stretch over which the moving channel travelled half of the range. */
+typedef struct {
+    hys_span spans[3];
+    hys_real travel;
+    uint32_t readings;
 } hys_piece;
 
-/* The last stretches of a channel, the present one first. */
+/* What is known of one channel that may stand still, and of the other one, which moves. */
 typedef struct {
-    hys_piece pieces[4];
     hys_real anchor;        /* where the travel was last counted */
+    hys_real longest;       /* travel in the longest run that ended with a move */
+    hys_lately lately;
+    hys_run run;
+    hys_piece piece;
+    unsigned char begun;    /* 0 before the first reading, and then no other member counts */
+    unsigned char follows;  /* the one followed the other in the run before */
 } hys_trail;
 
 /* What the watch knows of both channels. */

@@ -12,141 +12,283 @@
 #define AT_START 50u
 #define LEAST 1000u
 
-/* Of the watch: the numbers of pieces, and of readings in each; how much narrower the span of a
- * channel that stands still is; and the numbers by which the range is divided for a piece, for moves
- * that are noise, and for spans that say something, and the plane's width for a wide motion. */
-#define PIECES 4u
-#define READINGS 4u
+#define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
+
+/* Of the watch. What each is for is said in the library, at the constants of the same names. The
+ * range is divided by PIECE, NOISE, FAR_PIECE and FAR_RUN, and the plane's width by WIDE. */
 #define STILL 5u
+#define CYCLE 14u
+#define MOST 32u
 #define PIECE 2u
+#define READINGS_PIECE 4u
+#define READINGS_OUTPUT 10u
+#define READINGS_INPUT 16u
+#define WIDE 2u
 #define NOISE 16u
 #define FAR_PIECE 8u
-#define FAR_ALL 4u
-#define WIDE 2u
+#define FAR_RUN 4u
+#define LATELY 1u
 
-/* ---- Watch ---- */
+/* Of a run. */
+#define FOLLOWS 3u
+#define CHANCE 4u
+#define BEFORE 4u
+#define ROUNDING 1024u
+
+#define HALF (ONE / number(2u))
 
 static hys_real size_of(hys_real x)
 {
     return hys_max(x, -x);
 }
 
+/* ---- Spans ---- */
+
+static void begin_span(hys_span *span, hys_real at)
+{
+    span->low = at;
+    span->high = at;
+}
+
+static void widen(hys_span *span, hys_real at)
+{
+    span->low = hys_min(span->low, at);
+    span->high = hys_max(span->high, at);
+}
+
+static hys_real width_of(const hys_span *span)
+{
+    return span->high - span->low;
+}
+
+static void begin_spans(hys_span *spans, const hys_real *reading)
+{
+    size_t n;
+    for (n = 0u; n < 3u; n++) {
+        begin_span(spans + n, reading[n]);
+    }
+}
+
+static void widen_spans(hys_span *spans, const hys_real *reading)
+{
+    size_t n;
+    for (n = 0u; n < 3u; n++) {
+        widen(spans + n, reading[n]);
+    }
+}
+
+static void begin_lately(hys_lately *lately, hys_real at)
+{
+    begin_span(lately->spans, at);
+    begin_span(lately->spans + 1, at);
+    lately->travel = ZERO;
+}
+
+/* A stretch ends after the way `most`. */
+static void take_lately(hys_lately *lately, hys_real at, hys_real travel, hys_real most)
+{
+    widen(lately->spans, at);
+    lately->travel += travel;
+    if (lately->travel >= most) {
+        lately->spans[1].low = lately->spans[0].low;
+        lately->spans[1].high = lately->spans[0].high;
+        begin_span(lately->spans, at);
+        lately->travel = ZERO;
+    }
+}
+
+static hys_real width_lately(const hys_lately *lately)
+{
+    hys_span both;
+    both.low = lately->spans[0].low;
+    both.high = lately->spans[0].high;
+    widen(&both, lately->spans[1].low);
+    widen(&both, lately->spans[1].high);
+    return width_of(&both);
+}
+
+/* ---- Runs ---- */
+
+/* `reading` may be run->last. */
+static void begin_run(hys_run *run, const hys_real *reading)
+{
+    size_t n;
+    begin_spans(run->spans, reading);
+    run->travel = ZERO;
+    for (n = 0u; n < 2u; n++) {
+        run->first[n] = reading[n];
+        run->sums[n] = ZERO;
+        run->squares[n] = ZERO;
+    }
+    for (n = 0u; n < 3u; n++) {
+        run->last[n] = reading[n];
+    }
+    run->way = ZERO;
+    run->count = ZERO;
+    run->product = ZERO;
+    run->readings = 1u;
+}
+
+/* Takes a reading, to which the moving channel travelled. `lately` is its span lately. */
+static void take_run(hys_run *run, const hys_real *reading, hys_real travel, hys_real lately)
+{
+    hys_real step, x, y, before = run->last[0];
+    size_t n;
+    widen_spans(run->spans, reading);
+    run->travel += travel;
+    run->readings += run->readings < UINT32_MAX ? 1u : 0u;
+    for (n = 0u; n < 3u; n++) {
+        run->last[n] = reading[n];
+    }
+    if (number(BEFORE) * run->travel < lately) {
+        run->first[0] = reading[0];
+        run->first[1] = reading[1];
+        return;
+    }
+    step = size_of(reading[0] - before);
+    x = reading[0] - run->first[0];
+    y = reading[1] - run->first[1];
+    run->way += step;
+    run->count += ONE;
+    run->sums[0] += step * x;
+    run->sums[1] += step * y;
+    run->squares[0] += step * x * x;
+    run->squares[1] += step * y * y;
+    run->product += step * x * y;
+}
+
+/* Whether the one channel follows the other: their correlation is positive, and its square at least
+ * a third, more with few readings. A channel that keeps its value but for rounding follows nothing.
+ */
+static int follows(const hys_run *run)
+{
+    hys_real x = run->sums[0], y = run->sums[1];
+    hys_real product = run->way * run->product - x * y;
+    hys_real moving = run->way * run->squares[0] - x * x;
+    hys_real still = run->way * run->squares[1] - y * y;
+    hys_real rounding = number(ROUNDING) * EPSILON * run->way * run->squares[1];
+    hys_real least = run->count / number(FOLLOWS) + number(CHANCE);
+    return still > rounding && product > ZERO &&
+           product * product * run->count >= moving * still * least;
+}
+
+/* ---- Watch ---- */
+
 static void begin_piece(hys_piece *piece, const hys_real *reading)
 {
-    size_t n;
-    for (n = 0u; n < 3u; n++) {
-        piece->low[n] = reading[n];
-        piece->high[n] = reading[n];
-    }
+    begin_spans(piece->spans, reading);
     piece->travel = ZERO;
     piece->readings = 0u;
-    piece->begun = 1u;
 }
 
-/* Widens the spans of a piece by those of another one. */
-static void widen(hys_piece *piece, const hys_real *low, const hys_real *high)
+/* Nothing is known yet, so a run has to be proved twice: `follows` is 1. */
+static void begin_trail(hys_trail *trail, const hys_real *reading)
 {
-    size_t n;
-    for (n = 0u; n < 3u; n++) {
-        piece->low[n] = hys_min(piece->low[n], low[n]);
-        piece->high[n] = hys_max(piece->high[n], high[n]);
-    }
+    trail->anchor = reading[0];
+    trail->longest = ZERO;
+    begin_lately(&trail->lately, reading[0]);
+    begin_run(&trail->run, reading);
+    begin_piece(&trail->piece, reading);
+    trail->begun = 1u;
+    trail->follows = 1u;
 }
 
-static hys_real span(const hys_piece *piece, size_t n)
-{
-    return piece->high[n] - piece->low[n];
-}
-
-static int is_still(const hys_piece *piece)
-{
-    return span(piece, 1u) * number(STILL) < span(piece, 0u);
-}
-
-/* Copied member by member, because a copy of the whole struct may become a call of memcpy. */
-static void copy_piece(hys_piece *to, const hys_piece *from)
-{
-    size_t n;
-    for (n = 0u; n < 3u; n++) {
-        to->low[n] = from->low[n];
-        to->high[n] = from->high[n];
-    }
-    to->travel = from->travel;
-    to->readings = from->readings;
-    to->begun = from->begun;
-}
-
-/* What a piece that ends says: whether both channels moved in it, whether over all pieces one moved
- * there and back while the other one stood still, and how far the position moved in the piece and
- * over all. */
+/* What a piece that ends says: whether both channels moved in it, and whether the input did. */
 typedef struct {
-    int ended, alive, still;
-    hys_real moves, moved;
+    int ended, alive, moved;
 } hys_ended;
 
-static void look_along(hys_trail *trail, const hys_real *reading, hys_real range, hys_ended *says)
+/* Takes a reading. A run ends also where the position moves by `rest`. */
+static void look_along(hys_trail *trail, const hys_real *reading, hys_real range, hys_real rest,
+                       hys_ended *says)
 {
-    hys_piece *piece = trail->pieces;
-    hys_piece all;
-    hys_real step, travel = ZERO, far;
-    size_t n, begun = 0u;
+    hys_run *run = &trail->run;
+    hys_piece *piece = &trail->piece;
+    hys_real travel, lately, band, before, far;
     says->ended = 0;
-    if (!piece->begun) {
-        trail->anchor = reading[0];
-        begin_piece(piece, reading);
+    says->alive = 0;
+    says->moved = 0;
+    if (!trail->begun) {
+        begin_trail(trail, reading);
         return;
     }
-    step = size_of(reading[0] - trail->anchor);
-    if (step >= range / number(NOISE)) {
+    travel = size_of(reading[0] - trail->anchor);
+    if (travel >= range / number(NOISE)) {
         trail->anchor = reading[0];
-        piece->travel += step;
+    } else {
+        travel = ZERO;
     }
-    widen(piece, reading, reading);
+    /* A wrong reading is no cycle. */
+    travel = hys_min(travel, range / number(PIECE));
+    take_lately(&trail->lately, reading[0], travel, range * number(LATELY));
+    lately = hys_max(width_lately(&trail->lately), width_of(run->spans));
+    band = hys_max(lately, range / number(FAR_RUN)) / number(STILL);
+    before = width_of(run->spans + 1);
+    take_run(run, reading, travel, lately);
+    /* A band that gets narrower ends no run: only a move does. */
+    if ((width_of(run->spans + 1) > before && width_of(run->spans + 1) >= band) ||
+        width_of(run->spans + 2) >= rest) {
+        trail->longest = hys_max(trail->longest, run->travel);
+        begin_run(run, reading);
+        trail->follows = 0u;
+    }
+    widen_spans(piece->spans, reading);
+    piece->travel += travel;
     piece->readings += piece->readings < UINT32_MAX ? 1u : 0u;
-    if (piece->travel < range / number(PIECE) || piece->readings < READINGS) {
+    if (piece->travel < range / number(PIECE) || piece->readings < READINGS_PIECE) {
         return;
     }
-    copy_piece(&all, piece);
-    for (n = 0u; n < PIECES; n++) { /* PIECES iterations */
-        if (trail->pieces[n].begun) {
-            begun++;
-            travel += trail->pieces[n].travel;
-            widen(&all, trail->pieces[n].low, trail->pieces[n].high);
-        }
-    }
-    far = span(&all, 0u);
+    far = width_of(piece->spans);
     says->ended = 1;
-    says->alive = span(piece, 0u) >= range / number(FAR_PIECE) && !is_still(piece);
-    says->still = begun == PIECES && travel >= far + far * (ONE / number(2u)) &&
-                  far >= range / number(FAR_ALL) && is_still(&all);
-    says->moves = span(piece, 2u);
-    says->moved = span(&all, 2u);
-    for (n = PIECES - 1u; n > 0u; n--) { /* less than PIECES iterations */
-        copy_piece(trail->pieces + n, trail->pieces + (n - 1u));
-    }
+    says->alive =
+        far >= range / number(FAR_PIECE) && width_of(piece->spans + 1) * number(STILL) >= far;
+    says->moved = width_of(piece->spans + 2) >= HALF;
     begin_piece(piece, reading);
+}
+
+/* Whether the run proves the channel still: the other one, whose span counts as at least `least`,
+ * went there and back in `few` readings or more, and the input moved by `wide`. */
+static int is_still(hys_trail *trail, hys_real range, hys_real least, hys_real wide, uint32_t few)
+{
+    hys_run *run = &trail->run;
+    hys_real beyond_longest, span, cycle, most;
+    int followed;
+    if (!trail->begun) {
+        return 0;
+    }
+    beyond_longest = trail->longest + trail->longest * HALF;
+    span = hys_max(hys_max(width_lately(&trail->lately), width_of(run->spans)), least);
+    most = span * (number(MOST) / number(8u));
+    cycle = hys_max(span * (number(CYCLE) / number(8u)), hys_min(beyond_longest, most));
+    if (run->travel < cycle || run->readings < few ||
+        !(width_of(run->spans) >= range / number(FAR_RUN)) || width_of(run->spans + 2) < wide) {
+        return 0;
+    }
+    followed = trail->follows;
+    trail->follows = follows(run) ? 1u : 0u;
+    if (followed || trail->follows) {
+        begin_run(run, run->last);
+        return 0;
+    }
+    return 1;
 }
 
 static void restart_watch(hys_watch *watch)
 {
-    size_t n;
-    for (n = 0u; n < PIECES; n++) {
-        watch->output.pieces[n].begun = 0u;
-        watch->input.pieces[n].begun = 0u;
-    }
-    watch->output.anchor = ZERO;
-    watch->input.anchor = ZERO;
+    watch->output.begun = 0u;
+    watch->input.begun = 0u;
     watch->last = ZERO;
     watch->stuck = 0;
 }
 
 /* Looks at a reading; `watch->stuck` becomes what stands still. Where a piece of the output ends and
  * nothing is stuck, returns 1, and 2 if both channels moved in it. Otherwise returns 0. */
-static int look(hys_watch *watch, hys_real position, hys_real expected, hys_real measured, int believed)
+static int look(hys_watch *watch, hys_real position, hys_real expected, hys_real measured,
+                int believed)
 {
-    hys_real half = ONE / number(2u), step = measured - watch->last, reading[3];
+    hys_real step = measured - watch->last, reading[3];
     hys_ended output, input;
-    int alive, returns, same = size_of(step) < watch->range / number(NOISE);
+    int same = size_of(step) < watch->range / number(NOISE);
     watch->last = measured;
     if (!(believed || same)) {
         return 0;
@@ -154,22 +296,23 @@ static int look(hys_watch *watch, hys_real position, hys_real expected, hys_real
     reading[0] = expected;
     reading[1] = measured;
     reading[2] = position;
-    look_along(&watch->output, reading, watch->range, &output);
+    /* The position never moves by more than the width. */
+    look_along(&watch->output, reading, watch->range, watch->width + ONE, &output);
     reading[0] = measured;
     reading[1] = expected;
-    look_along(&watch->input, reading, watch->range, &input);
-    alive = output.ended && output.alive;
-    returns = input.ended && input.moves >= half;
-    if ((watch->stuck == HYS_OUTPUT_STUCK && !alive) || (watch->stuck == HYS_INPUT_STUCK && !(alive || returns))) {
+    look_along(&watch->input, reading, watch->range, HALF, &input);
+    if ((watch->stuck == HYS_OUTPUT_STUCK && !output.alive) ||
+        (watch->stuck == HYS_INPUT_STUCK && !(output.alive || input.moved))) {
         return 0;
     }
     watch->stuck = 0;
-    if (output.ended && output.still && output.moved >= watch->width / number(WIDE)) {
+    if (is_still(&watch->output, watch->range, ZERO, watch->width / number(WIDE),
+                 READINGS_OUTPUT)) {
         watch->stuck = HYS_OUTPUT_STUCK;
-    } else if (input.ended && input.still && input.moved < half) {
+    } else if (is_still(&watch->input, watch->range, watch->range, ZERO, READINGS_INPUT)) {
         watch->stuck = HYS_INPUT_STUCK;
     }
-    return watch->stuck != 0 || !output.ended ? 0 : (alive ? 2 : 1);
+    return watch->stuck != 0 || !output.ended ? 0 : (output.alive ? 2 : 1);
 }
 
 /* ---- Gate ---- */

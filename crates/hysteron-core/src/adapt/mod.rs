@@ -17,6 +17,7 @@ mod operators;
 mod options;
 mod outcome;
 mod parameters;
+mod run;
 mod shift;
 mod shift_options;
 mod start;

@@ -2,30 +2,47 @@
 //!
 //! A sensor that lost its contact goes on with one value. A learner takes that for a plant whose
 //! output no longer depends on its input, and unlearns the model. So the measured output is
-//! compared with the *expected* one, that of the model before it learned anything. Both are cut into
-//! pieces in which the expected output travels half of its range. Over the last pieces, a way there
-//! and back, the spans of the two are compared. A load, a drift or a model that errs change the
-//! ratio of these spans; a channel that stands still takes it to nearly zero.
+//! compared with the *expected* one, that of the model before it learned anything. A *run* is a
+//! stretch over which the measured output stays within a band, a part of the span that the expected
+//! one had lately. A plant that moves leaves the band again and again, and a new run begins. A
+//! frozen one stays, and the run lasts until the expected output has been there and back. A load, a
+//! drift or a model that errs change the spans; a channel that stands still takes one to nearly
+//! zero.
+//!
+//! The output of a live plant may be that small too. But then it follows the expected one: the two
+//! are correlated over the run. The noise of a frozen channel is not.
 
 use super::Outcome;
+use super::run::{Lately, Run, Span};
 use crate::scalar::Real;
 
-/// A piece ends where its channel has travelled the model's range divided by this.
-const PIECE: usize = 2;
-/// A channel stands still if its span is below that of the other one divided by this.
+/// The band of a run is the other channel's span divided by this.
 const STILL: usize = 5;
-/// Pieces that are compared: a whole cycle. A shifted plant moves later than the model, and with
-/// fewer pieces it would be called stuck.
-const PIECES: usize = 4;
-/// Readings in a piece, at least: fewer do not show a span.
-const READINGS: u32 = 4;
-/// An input that moves by less than the plane's width divided by this may miss the part of the plane
-/// in which a shifted plant moves.
+/// A run proves a channel still where the other one travelled this many eighths of its span. There
+/// and back are sixteen; two are left for the way that the channel made in the band before it
+/// froze.
+const CYCLE: usize = 14;
+/// More than that is asked of a channel that rested for long before and moved again, but at most
+/// this many eighths, two cycles.
+const MOST: usize = 32;
+/// At the end of the readings this many eighths are enough, for a channel that did not rest before.
+const END: usize = 6;
+/// A piece ends where the moving channel has travelled the model's range divided by this.
+const PIECE: usize = 2;
+/// Readings in a piece, in a run of the output, and in one of the input, at least: fewer do not
+/// show a span. The measured output moves in the last of them, and a few wrong readings move it
+/// far.
+const READINGS: [u32; 3] = [4, 10, 16];
+/// An input that moves by less than the plane's width divided by this may miss the part of the
+/// plane in which a shifted plant moves.
 const WIDE: usize = 2;
 /// Moves below the range divided by this are noise and no travel.
 const NOISE: usize = 16;
-/// Spans below the range divided by this say nothing: of a piece, and of all that are compared.
+/// Spans below the range divided by this say nothing: of a piece, and of a run.
 const FAR: [usize; 2] = [8, 4];
+/// The span of a channel lately is that over the last ranges of travel: from so many to twice as
+/// many.
+const LATELY: usize = 1;
 
 /// A channel of the plant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,15 +92,15 @@ pub enum Watched {
 
 /// Notices a channel that stands still while the other one moves. Takes constant time and memory.
 ///
-/// An [`crate::Estimator`] has its own. Anything else that learns may use one: where a piece ends it
-/// sets aside what it has learned so far, and where a channel is stuck it returns to what it had set
-/// aside before the last piece that was alive.
+/// An [`crate::Estimator`] has its own. Anything else that learns may use one: where a piece ends
+/// it sets aside what it has learned so far, and where a channel is stuck it returns to what it had
+/// set aside before the last piece that was alive.
 ///
 /// ```
 /// use hysteron_core::{Channel, Reading, Watch, Watched};
 /// let mut watch = Watch::new(10.0_f64, 10.0);
 /// let mut found = Watched::Moving;
-/// for n in 0..400 {
+/// for n in 0..260 {
 ///     let position = 10.0 - (f64::from(n % 200) - 100.0).abs() / 10.0; // there and back
 ///     let measured = if n < 60 { position } else { 6.0 };
 ///     let reading = Reading { position, expected: position, measured };
@@ -96,9 +113,9 @@ pub struct Watch<T> {
     range: T,
     /// Width of the plane.
     width: T,
-    /// Pieces of the expected output.
+    /// Is the output still while the expected one moves?
     output: Trail<T>,
-    /// Pieces of the measured output.
+    /// Is the input still, and the expected output with it, while the measured one moves?
     input: Trail<T>,
     /// The last reading.
     last: T,
@@ -146,19 +163,26 @@ impl<T: Real> Watch<T> {
         if !(believed || same) {
             return self.stuck.map_or(Watched::Moving, Watched::Stuck);
         }
-        let piece = self.output.look([expected, measured, position], self.range);
+        let piece = self
+            .output
+            .look([expected, measured, position], self.range, T::INFINITY);
         let alive = piece.is_some_and(|piece| piece.alive);
-        let other = self.input.look([measured, expected, position], self.range);
+        let other = self
+            .input
+            .look([measured, expected, position], self.range, T::HALF);
         let returns = other.is_some_and(|piece| piece.moves);
         match self.stuck {
             Some(Channel::Output) if !alive => return Watched::Stuck(Channel::Output),
             Some(Channel::Input) if !(alive || returns) => return Watched::Stuck(Channel::Input),
             _ => self.stuck = None,
         }
-        if piece.is_some_and(|piece| piece.still && piece.moved >= self.width / T::from_index(WIDE))
-        {
+        let wide = self.width / T::from_index(WIDE);
+        if self.output.is_still(self.range, T::ZERO, wide, READINGS[1]) {
             self.stuck = Some(Channel::Output);
-        } else if other.is_some_and(|piece| piece.still && piece.moved < T::HALF) {
+        } else if self
+            .input
+            .is_still(self.range, self.range, T::ZERO, READINGS[2])
+        {
             self.stuck = Some(Channel::Input);
         }
         match (self.stuck, piece) {
@@ -167,18 +191,46 @@ impl<T: Real> Watch<T> {
             (None, None) => Watched::Moving,
         }
     }
+
+    /// Whether the output seems to stand still at the end of the readings, though not for a whole
+    /// cycle yet: for how many of the readings, the last ones. Only sensible where nothing follows.
+    ///
+    /// One way of the expected output is no proof, so the plant's own past decides too: at no time
+    /// before did its output stay within such a band over two thirds of this way.
+    #[must_use]
+    pub fn still_at_the_end(&self) -> Option<u32> {
+        // One that was never seen to move says nothing of how it would rest.
+        let past = self.output.longest > T::ZERO;
+        let run = self.output.run.as_ref().filter(|_| past)?;
+        let part = |parts: usize| self.range / T::from_index(parts);
+        let lately = self.output.lately.size().max(run.spans[0].size());
+        let enough = (lately * eighths(END)).max(self.output.beyond());
+        let far = run.spans[0].size() >= part(FAR[1]).max(lately * T::HALF);
+        let wide = run.spans[2].size() >= self.width / T::from_index(WIDE);
+        (run.travel >= enough && far && wide && !run.follows()).then_some(run.readings)
+    }
 }
 
-/// The last pieces of one channel, the present one first.
+fn eighths<T: Real>(count: usize) -> T {
+    T::from_index(count) / T::from_index(8)
+}
+
+/// What is known of one channel that may stand still, and of the other one, which moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Trail<T> {
-    pieces: [Option<Piece<T>>; PIECES],
-    /// Where the travel was last counted.
+    /// Where the travel of the moving one was last counted.
     anchor: T,
+    run: Option<Run<T>>,
+    /// How far the moving one travelled in the longest run that ended with a move of the other.
+    longest: T,
+    /// Whether the one followed the other, though within the band, in the run before.
+    follows: bool,
+    lately: Lately<T>,
+    piece: Option<Piece<T>>,
 }
 
-/// A stretch over which a channel travelled, and the spans of that channel, of the one it is
-/// compared with, and of the input's position.
+/// A stretch over which the moving channel travelled, and the spans of that channel, of the other
+/// one, and of the input's position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece<T> {
     spans: [Span<T>; 3],
@@ -188,100 +240,108 @@ struct Piece<T> {
 
 /// What a piece that ends says.
 #[derive(Clone, Copy)]
-struct Ended<T> {
+struct Ended {
     /// In this piece both channels moved.
     alive: bool,
-    /// Over all pieces the channel moved there and back, and the other one stood still.
-    still: bool,
     /// In this piece the input moved.
     moves: bool,
-    /// How far the input moved over all pieces.
-    moved: T,
 }
 
 impl<T: Real> Trail<T> {
-    /// Takes a reading of the channel, of the one it is compared with, and of the position.
-    fn look(&mut self, reading: [T; 3], range: T) -> Option<Ended<T>> {
+    /// Takes a reading of the channel that moves, of the one that may be still, and of the
+    /// position. A run ends also where the position moves by `rest`.
+    fn look(&mut self, reading: [T; 3], range: T, rest: T) -> Option<Ended> {
         let part = |parts: usize| range / T::from_index(parts);
-        let Some(piece) = &mut self.pieces[0] else {
-            self.anchor = reading[0];
-            self.pieces[0] = Some(Piece::begin(reading));
+        let moving = reading[0];
+        let (Some(run), Some(piece)) = (&mut self.run, &mut self.piece) else {
+            self.begin(reading);
             return None;
         };
-        let step = reading[0] - self.anchor;
-        let step = step.max(-step);
-        if step >= part(NOISE) {
-            self.anchor = reading[0];
-            piece.travel = piece.travel + step;
+        let step = moving - self.anchor;
+        let mut travel = step.max(-step);
+        match travel >= part(NOISE) {
+            true => self.anchor = moving,
+            false => travel = T::ZERO,
         }
-        piece.take(reading);
-        if piece.travel < part(PIECE) || piece.readings < READINGS {
+        // A wrong reading is no cycle.
+        travel = travel.min(part(PIECE));
+        self.lately
+            .take(moving, travel, range * T::from_index(LATELY));
+        let lately = self.lately.size().max(run.spans[0].size());
+        let band = lately.max(part(FAR[1])) / T::from_index(STILL);
+        let before = run.spans[1].size();
+        run.take(reading, travel, lately);
+        // A band that gets narrower ends no run: only a move does.
+        let leaves = run.spans[1].size() > before && run.spans[1].size() >= band;
+        if leaves || run.spans[2].size() >= rest {
+            self.longest = self.longest.max(run.travel);
+            *run = Run::begin(reading);
+            self.follows = false;
+        }
+        piece.take(reading, travel);
+        if piece.travel < part(PIECE) || piece.readings < READINGS[0] {
             return None;
         }
-        let last = *piece;
-        let all = self.pieces.iter().flatten();
-        let all = all.fold(last, |all, piece| all.with(piece));
-        let travel = self.pieces.iter().flatten();
-        let travel = travel.fold(T::ZERO, |sum, piece| sum + piece.travel);
-        let full = self.pieces.iter().all(Option::is_some);
-        let far = all.spans[0].size();
-        // One way alone proves nothing: a load may move the output while the input rests.
-        let there_and_back = travel >= far + far * T::HALF;
-        let ended = Ended {
-            alive: last.is_far(part(FAR[0])) && !last.is_still(),
-            still: full && there_and_back && all.is_far(part(FAR[1])) && all.is_still(),
-            moves: last.spans[2].size() >= T::HALF,
-            moved: all.spans[2].size(),
+        let [far, other, moved] = piece.spans.map(|span| span.size());
+        *piece = Piece::begin(reading);
+        Some(Ended {
+            alive: far >= part(FAR[0]) && other * T::from_index(STILL) >= far,
+            moves: moved >= T::HALF,
+        })
+    }
+
+    fn begin(&mut self, reading: [T; 3]) {
+        self.anchor = reading[0];
+        self.lately = Lately::begin(reading[0]);
+        // Nothing is known yet: it needs two cycles.
+        self.follows = true;
+        self.run = Some(Run::begin(reading));
+        self.piece = Some(Piece::begin(reading));
+    }
+
+    /// What no run of a channel that moved again came near to: half as long again as the longest. A
+    /// plant that is shifted may rest where the model moves, time and again.
+    fn beyond(&self) -> T {
+        self.longest + self.longest * T::HALF
+    }
+
+    /// Whether the run proves the channel still: the other one, whose span counts as at least
+    /// `least`, went there and back in `few` readings or more, and the input moved by `wide`.
+    ///
+    /// A step of a small output, as of a load, may hide for one cycle that it follows.
+    fn is_still(&mut self, range: T, least: T, wide: T, few: u32) -> bool {
+        let beyond = self.beyond();
+        let Some(run) = &mut self.run else {
+            return false;
         };
-        self.pieces.copy_within(..PIECES - 1, 1);
-        self.pieces[0] = Some(Piece::begin(reading));
-        Some(ended)
+        let span = self.lately.size().max(run.spans[0].size()).max(least);
+        let cycle = (span * eighths(CYCLE)).max(beyond.min(span * eighths(MOST)));
+        let far = run.spans[0].size() >= range / T::from_index(FAR[1]);
+        if run.travel < cycle || run.readings < few || !far || run.spans[2].size() < wide {
+            return false;
+        }
+        let followed = core::mem::replace(&mut self.follows, run.follows());
+        if followed || self.follows {
+            *run = Run::begin(run.last());
+        }
+        !(followed || self.follows)
     }
 }
 
 impl<T: Real> Piece<T> {
     fn begin(reading: [T; 3]) -> Self {
         Self {
-            spans: reading.map(|at| Span { low: at, high: at }),
+            spans: reading.map(Span::at),
             travel: T::ZERO,
             readings: 0,
         }
     }
 
-    fn take(&mut self, reading: [T; 3]) {
+    fn take(&mut self, reading: [T; 3], travel: T) {
         for (span, at) in self.spans.iter_mut().zip(reading) {
-            span.low = span.low.min(at);
-            span.high = span.high.max(at);
+            span.take(at);
         }
+        self.travel = self.travel + travel;
         self.readings = self.readings.saturating_add(1);
-    }
-
-    /// The spans of both.
-    fn with(mut self, other: &Self) -> Self {
-        for (span, other) in self.spans.iter_mut().zip(&other.spans) {
-            span.low = span.low.min(other.low);
-            span.high = span.high.max(other.high);
-        }
-        self
-    }
-
-    fn is_far(&self, least: T) -> bool {
-        self.spans[0].size() >= least
-    }
-
-    fn is_still(&self) -> bool {
-        self.spans[1].size() * T::from_index(STILL) < self.spans[0].size()
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Span<T> {
-    low: T,
-    high: T,
-}
-
-impl<T: Real> Span<T> {
-    fn size(&self) -> T {
-        self.high - self.low
     }
 }

@@ -16,6 +16,8 @@ struct Rig {
     /// Range of the output.
     range: f64,
     noise: f64,
+    /// Step of the sensor's readings; 0 for none.
+    quantum: f64,
     /// Offset, gain and shift of the plant, and how they go on from sample to sample.
     now: [f64; 3],
     ramp: [f64; 3],
@@ -55,6 +57,7 @@ impl Rig {
             plant,
             range,
             noise: [0.0, 0.002, 0.01][rng.random_range(0..3)] * range,
+            quantum: [0.0, 0.001, 0.01][rng.random_range(0..3)] * range,
             now: [0.0, 1.0, 0.0],
             ramp: [0.0; 3],
             rng,
@@ -68,7 +71,16 @@ impl Rig {
         let [offset, gain, shift] = self.now;
         let (plant, state) = &mut self.plant;
         let output = plant.step(state, input - shift).unwrap().output;
-        offset + gain * output + self.noise * self.rng.random_range(-1.0..1.0)
+        self.sensed(offset + gain * output)
+    }
+
+    /// The sensor's reading of an output: with noise, in steps.
+    fn sensed(&mut self, output: f64) -> f64 {
+        let noisy = output + self.noise * self.rng.random_range(-1.0..1.0);
+        match self.quantum {
+            0.0 => noisy,
+            quantum => (noisy / quantum).round() * quantum,
+        }
     }
 
     fn parameters(&self) -> (Vec<f64>, f64) {
@@ -77,14 +89,34 @@ impl Rig {
     }
 }
 
-/// Loops over at least half of the plane, `samples` to each.
+/// Loops over at least half of the plane, `samples` to each, half of them steady.
 fn loops(rng: &mut StdRng, plane: &Plane<f64>, count: usize, samples: usize) -> Vec<f64> {
+    let steady = rng.random_bool(0.5);
+    loops_of(rng, plane, count, samples, steady)
+}
+
+/// The same, all of one size if `steady`, as triangles or sines.
+fn loops_of(
+    rng: &mut StdRng,
+    plane: &Plane<f64>,
+    count: usize,
+    samples: usize,
+    steady: bool,
+) -> Vec<f64> {
     let width = plane.max() - plane.bottom();
     let mut inputs = Vec::new();
-    while inputs.len() < count {
+    let ends = |rng: &mut StdRng| {
         let low = plane.bottom() + rng.random_range(0.0..0.2) * width;
-        let high = plane.max() - rng.random_range(0.0..0.2) * width;
-        let way = |n: usize| 1.0 - (2.0 * n as f64 / samples as f64 - 1.0).abs();
+        (low, plane.max() - rng.random_range(0.0..0.2) * width)
+    };
+    let steady = steady.then(|| ends(rng));
+    let sine = rng.random_bool(0.5);
+    while inputs.len() < count {
+        let (low, high) = steady.unwrap_or_else(|| ends(rng));
+        let way = |n: usize| match sine {
+            true => 0.5 - 0.5 * (std::f64::consts::TAU * n as f64 / samples as f64).cos(),
+            false => 1.0 - (2.0 * n as f64 / samples as f64 - 1.0).abs(),
+        };
         inputs.extend((0..samples).map(|n| low + (high - low) * way(n)));
     }
     inputs.truncate(count);
@@ -96,12 +128,14 @@ const FROZEN: [fn(f64) -> f64; 3] = [|last| last, |_| 0.0, |last| -last];
 
 #[test]
 fn what_was_learned_from_a_frozen_output_is_undone() {
-    for seed in 0..300 {
+    let mut cycles = [vec![], vec![]];
+    for seed in 0..600 {
         let method = METHODS[seed as usize % 2];
         let mut rig = Rig::new(seed, method);
         let samples = rig.rng.random_range(60..400);
         let plane = *rig.learner.model.plane();
-        let inputs = loops(&mut rig.rng, &plane, 12 * samples, samples);
+        let steady = rig.rng.random_bool(0.5);
+        let inputs = loops_of(&mut rig.rng, &plane, 12 * samples, samples, steady);
         let frozen = rig.rng.random_range(3 * samples..6 * samples);
         rig.ramp[0] = 0.3 * rig.range / inputs.len() as f64 * rig.rng.random_range(-1.0..1.0);
         let (mut before, mut last) = (Vec::new(), 0.0);
@@ -114,8 +148,8 @@ fn what_was_learned_from_a_frozen_output_is_undone() {
                     last
                 }
                 false => {
-                    let noise = rig.noise * rig.rng.random_range(-1.0..1.0);
-                    FROZEN[seed as usize / 6 % 3](last) + noise
+                    let held = FROZEN[seed as usize / 6 % 3](last);
+                    rig.sensed(held)
                 }
             };
             let outcome = rig.learner.step(input, measured).unwrap().outcome;
@@ -128,13 +162,17 @@ fn what_was_learned_from_a_frozen_output_is_undone() {
             );
             assert!(found.is_none() || may, "{seed}, {n}: {outcome:?}");
         }
-        // A loop travels at least three fifths of the range to and fro. The piece in which the
-        // output froze and four more travel two and a half times the range, and readings refused by
-        // the gate do not count.
-        let found = found.expect("found");
-        assert!((frozen..frozen + 4 * samples).contains(&found), "{seed}");
+        let late = found.expect("found") - frozen;
+        // Two cycles of the largest loop are at most asked of a run, whose band may hold the output
+        // for one before it froze, and of the span lately, which is that of up to a cycle before.
+        // Of 3000 other seeds four took more than two cycles, one 3.3.
+        assert!(late <= 4 * samples, "{seed}: {late} of {samples}");
+        cycles[usize::from(steady)].push(late as f64 / samples as f64);
         let at = before.iter().rposition(|kept| *kept == rig.parameters());
-        assert!(at.is_some_and(|at| frozen - at <= 2 * samples), "{seed}");
+        assert!(
+            at.is_some_and(|at| frozen - at <= 2 * samples),
+            "{seed}: {at:?}"
+        );
         let (anew, _) = build(plane, rig.learner.model.operator(), &rig.parameters().0);
         assert_eq!(
             rig.learner.model.output_range(),
@@ -142,11 +180,20 @@ fn what_was_learned_from_a_frozen_output_is_undone() {
             "{seed}"
         );
     }
+    for cycles in &mut cycles {
+        cycles.sort_by(f64::total_cmp);
+        assert!(
+            cycles[cycles.len() / 2] <= 1.0,
+            "a cycle is enough for most"
+        );
+        // The half is for what was larger before, and for what moved in the band.
+        assert!(cycles[cycles.len() * 9 / 10] <= 1.5, "nearly all");
+    }
 }
 
 #[test]
 fn no_plant_that_changes_is_called_stuck() {
-    for seed in 0..600 {
+    for seed in 0..1200 {
         let method = METHODS[seed as usize % 2];
         let mut rig = Rig::new(seed, method);
         let samples = rig.rng.random_range(20..400);
@@ -154,20 +201,32 @@ fn no_plant_that_changes_is_called_stuck() {
         let inputs = loops(&mut rig.rng, &plane, 12 * samples, samples);
         let count = inputs.len();
         let mut change = |most: f64| rig.rng.random_range(-most..most);
-        let offset = change(2.0) * rig.range;
-        let gain = 2.0_f64.powf(change(1.0));
+        let mut offset = change(2.0) * rig.range;
+        let mut gain = 2.0_f64.powf(change(1.0));
         let shift = change(0.2) * (plane.max() - plane.bottom());
+        if seed % 3 == 0 {
+            // A stroke far smaller than the model's, of which a tenth is noise, is alive too. It is
+            // so only while it changes by its own size, and without spikes. Of 1000 such plants 2
+            // are called stuck with spikes, 19 with noise up to a percent of the model's range, and
+            // 194 that jump or drift by up to twice that range: what they follow is lost in it.
+            let small = rig.rng.random_range(0.02..0.2);
+            rig.now[1] = small;
+            rig.noise = rig.noise.min(0.05 * small * rig.range);
+            rig.quantum = rig.quantum.min(0.1 * small * rig.range);
+            offset *= small;
+            gain *= small;
+        }
         let at = rig.rng.random_range(0..count);
         let step = seed % 2 == 0;
         if !step {
             let over = 1.0 / count as f64;
-            rig.ramp = [offset * over, (gain - 1.0) * over, shift * over];
+            rig.ramp = [offset * over, (gain - rig.now[1]) * over, shift * over];
         }
         for (n, &input) in inputs.iter().enumerate() {
             if step && n == at {
                 rig.now = [offset, gain, shift];
             }
-            let spike = seed % 5 == 0 && rig.rng.random_bool(0.01);
+            let spike = seed % 5 == 0 && seed % 3 > 0 && rig.rng.random_bool(0.01);
             let measured = rig.measure(input) * if spike { 4.0 } else { 1.0 };
             let outcome = rig.learner.step(input, measured).unwrap().outcome;
             assert!(!outcome.is_stuck(), "{seed}, {n}: {outcome:?}");

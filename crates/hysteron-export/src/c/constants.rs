@@ -146,8 +146,10 @@ impl<T: Number> Constants<T> {
         let options = 4 * WORD + 11 * T::BYTES;
         let trial = aligned(4 * T::BYTES + WORD);
         let gate = aligned(4 * T::BYTES + 2 * WORD);
-        let piece = aligned(7 * T::BYTES + WORD + 1);
-        let watch = aligned(2 * (4 * piece + T::BYTES) + 3 * T::BYTES + WORD);
+        let piece = aligned(7 * T::BYTES + WORD);
+        let run = aligned(19 * T::BYTES + WORD);
+        let trail = aligned(7 * T::BYTES + run + piece + 2);
+        let watch = aligned(2 * trail + 3 * T::BYTES + WORD);
         let own = options + 2 * trial + gate + watch;
         let adaptive = aligned(model + own + aligned(22 * WORD) + 10 * T::BYTES + 4);
         let (table, weights) = (self.table().len(), self.weights.len());

@@ -316,7 +316,8 @@ fn calls(rng: &mut StdRng, model: &Model, count: usize) -> Vec<Call> {
     calls
 }
 
-/// Loops over the whole plane; then the output stands still, and then the input, with some noise.
+/// Loops over the whole plane; then the output stands still, first to the bit and then with some
+/// noise, and then the input with some.
 fn stuck(rng: &mut StdRng, plant: &Model, calls: &mut Vec<Call>) {
     let (plane, mut there, mut last) = (plant.plane(), plant.start(), 0.0);
     let k = plane.levels() as f64;
@@ -326,7 +327,8 @@ fn stuck(rng: &mut StdRng, plant: &Model, calls: &mut Vec<Call>) {
         let measured = plant.step(&mut there, at(k * way)).unwrap().output;
         let (seen, read) = match n {
             0..250 => (k * way, measured),
-            250..700 => (k * way, last),
+            250..475 => (k * way, last),
+            475..700 => (k * way, last + rng.random_range(-0.01..0.01)),
             _ => (0.5 * k + rng.random_range(0.0..0.2), measured),
         };
         if n < 250 {

@@ -170,6 +170,9 @@ pub fn adapt(
     let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
+    let still = stuck::at_the_end(&offline, recordings, &fixed, learned_by);
+    // The last samples, which are not to be learned from.
+    let unsure = probation.max(still);
     let mut learned = Vec::with_capacity(count);
     let mut last = None;
     for recording in recordings {
@@ -178,12 +181,12 @@ pub fn adapt(
             (false, true) => {}
             (false, false) => adaptive.reset()?,
         }
-        // Those up to the samples on probation, and these.
-        let sure = (count - probation).saturating_sub(learned.len());
+        // Those up to the last samples, and these.
+        let sure = (count - unsure).saturating_sub(learned.len());
         let sure = sure.min(recording.len());
         for part in [0..sure, sure..recording.len()] {
             let before = learned.len();
-            if last.is_none() && before + probation >= count {
+            if last.is_none() && before + unsure >= count {
                 adaptive.refit()?;
                 last = Some((adaptive.model()?, adaptive.shares()));
             }
@@ -198,6 +201,10 @@ pub fn adapt(
             learned.extend(adaptive.run(input, output, Progress::new(&told))?);
         }
     }
+    // One that found a channel still has undone what it learned there, the samples before too.
+    if adaptive.stuck().is_some() {
+        last = Some((adaptive.model()?, adaptive.shares()));
+    }
     let (last, shares) = last.ok_or_else(no_samples)?;
     Learned {
         offline,
@@ -206,6 +213,7 @@ pub fn adapt(
         fixed,
         from_on,
         probation,
+        still,
         shares,
         shift: None,
         options: learned_by,
@@ -222,6 +230,8 @@ struct Learned {
     fixed: Vec<f64>,
     from_on: bool,
     probation: usize,
+    /// How many of the last samples have an output that seems to stand still.
+    still: usize,
     shares: Vec<(&'static str, f64)>,
     shift: Option<ShiftFound>,
     options: EstimatorOptions,
@@ -237,12 +247,15 @@ impl Learned {
         let Self {
             offline,
             mut last,
-            learned,
+            mut learned,
             fixed,
             ..
         } = self;
         let count = joined.len();
         let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
+        for learning in &mut learned[count - self.still..] {
+            learning.outcome = Outcome::OutputStuck;
+        }
         let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
         let counts = OutcomeCounts::of(&learned);
         let compare = |which: &dyn Fn(usize) -> bool| {
@@ -258,7 +271,7 @@ impl Learned {
             .collect::<Option<_>>()
             .unwrap_or_default();
         let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
-        let stuck = Stuck::all(&outcomes, joined, &fixed);
+        let stuck = Stuck::all(&outcomes, joined, &fixed, self.still);
         let alive = |n: &usize| stuck.iter().all(|stuck| !stuck.samples.contains(n));
         let alive: Vec<usize> = (0..count).filter(alive).collect();
         let last_third = &alive[2 * alive.len() / 3..];

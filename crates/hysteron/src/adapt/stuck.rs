@@ -1,13 +1,15 @@
 //! Where a channel of a recording stood still, as a learner found it.
 
+use super::EstimatorOptions;
+use crate::model::Model;
 use crate::recording::Recording;
-use hysteron_core::{Channel, Outcome};
+use hysteron_core::{Channel, Outcome, Reading, Watch};
 use serde::{Serialize, Serializer};
 use std::ops::Range;
 
-/// The learner compared pieces in which the channel that moves travelled twice its range. So over this
-/// many times its range before, the other one surely stood still.
-const TRAVEL: f64 = 1.5;
+/// A learner needs a cycle to see that a channel stands still. So over this many times the range of
+/// the other one before, it surely did.
+const TRAVEL: f64 = 0.4;
 
 /// A stretch of a recording over which a channel stood still while the other one moved. Nothing was
 /// learned there.
@@ -30,8 +32,14 @@ fn word<S: Serializer>(channel: &Channel, serializer: S) -> Result<S::Ok, S::Err
 }
 
 impl Stuck {
-    /// The stretches that `outcomes` tell. `fixed` is the output of the model left alone.
-    pub(super) fn all(outcomes: &[Outcome], recording: &Recording, fixed: &[f64]) -> Vec<Self> {
+    /// The stretches that `outcomes` tell. `fixed` is the output of the model left alone, `tail` what
+    /// [`at_the_end`] found.
+    pub(super) fn all(
+        outcomes: &[Outcome],
+        recording: &Recording,
+        fixed: &[f64],
+        tail: usize,
+    ) -> Vec<Self> {
         let mut found: Vec<Self> = Vec::new();
         let mut goes_on = false;
         for (n, outcome) in outcomes.iter().enumerate() {
@@ -52,7 +60,12 @@ impl Stuck {
                         Channel::Output => (&recording.output[..], fixed),
                         Channel::Input => (&recording.input[..], &recording.output[..]),
                     };
-                    let samples = began(still, moving, n)..n + 1;
+                    let seen = if n + tail < outcomes.len() {
+                        n
+                    } else {
+                        outcomes.len() - 1
+                    };
+                    let samples = began(still, moving, seen)..n + 1;
                     found.push(Self { channel, samples });
                 }
             }
@@ -77,4 +90,41 @@ fn began(still: &[f64], moving: &[f64], seen: usize) -> usize {
     let like = |y: &f64| (low - margin..=high + margin).contains(y);
     let before = still[..first].iter().rev().take_while(|y| like(y)).count();
     first - before
+}
+
+/// How many samples at the end of the recordings have an output that seems to stand still, though a
+/// learner cannot see it yet, for want of a whole cycle. `fixed` is the output of the model left
+/// alone.
+pub(super) fn at_the_end(
+    model: &Model,
+    recordings: &[Recording],
+    fixed: &[f64],
+    options: EstimatorOptions,
+) -> usize {
+    let Some(recording) = recordings.last().filter(|_| options.gate().0 > 0.0) else {
+        return 0;
+    };
+    let plane = model.plane();
+    let (off, on) = model.output_range();
+    let mut watch = Watch::new((on - off).abs(), plane.levels() as f64);
+    let fixed = &fixed[fixed.len() - recording.len()..];
+    let samples = recording.input.iter().zip(&recording.output).zip(fixed);
+    for ((&input, &measured), &expected) in samples {
+        let position = plane.normalise(input);
+        watch.look(
+            Reading {
+                position,
+                expected,
+                measured,
+            },
+            true,
+        );
+    }
+    if watch.stuck().is_some() || recording.len() < 2 {
+        return 0;
+    }
+    // Noise may begin the run anew after the freeze: its readings tell where that was.
+    let first = || began(&recording.output, fixed, recording.len() - 1);
+    let still = |count: u32| (count as usize).max(recording.len() - first());
+    watch.still_at_the_end().map_or(0, still)
 }

@@ -1,5 +1,6 @@
 //! The method `load` over a recording: an estimate of the shift, sample by sample.
 
+use super::stuck::at_the_end;
 use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation};
 use crate::error::Result;
 use crate::model::{Model, Surroundings};
@@ -40,6 +41,8 @@ pub(super) fn adapt(
     let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
+    let still = at_the_end(&offline, recordings, &fixed, learned_by);
+    let unsure = probation.max(still);
     let (mut learned, mut shifts, mut loads) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = adaptive.clone();
     for recording in recordings {
@@ -57,7 +60,7 @@ pub(super) fn adapt(
             if done % SAMPLES_BETWEEN == 0 {
                 progress.tell("adaptation", done as f64 / count as f64)?;
             }
-            if done + probation == count {
+            if done + unsure == count {
                 last = adaptive.clone();
             }
             shifts.push(adaptive.shift());
@@ -65,7 +68,8 @@ pub(super) fn adapt(
             learned.push(adaptive.step(sample, recording.output[n])?);
         }
     }
-    if probation == 0 {
+    // One that found a channel still has undone what it learned there.
+    if unsure == 0 || adaptive.stuck().is_some() {
         last = adaptive;
     }
     progress.tell("adaptation", 1.0)?;
@@ -84,6 +88,7 @@ pub(super) fn adapt(
         fixed,
         from_on,
         probation,
+        still,
         shares: Vec::new(),
         shift: Some(found),
         options: learned_by,

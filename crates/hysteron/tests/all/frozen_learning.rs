@@ -36,7 +36,13 @@ fn actuator(rng: &mut ChaCha8Rng, stroke: f64) -> Model {
 
 /// Loops of two sizes, of a plant that is somewhat larger than its model, and drifts.
 fn recorded(rng: &mut ChaCha8Rng, model: &Model, noise: f64) -> Recording {
-    let samples = f64::from(rng.random_range(100..300));
+    let samples = rng.random_range(100..300);
+    recorded_in(rng, model, noise, samples)
+}
+
+/// The same, with so many samples to a loop.
+fn recorded_in(rng: &mut ChaCha8Rng, model: &Model, noise: f64, samples: usize) -> Recording {
+    let samples = samples as f64;
     let wave = |n: i32| {
         let turn = f64::from(n) / samples;
         48.0 - (26.0 + 6.0 * (0.31 * turn).cos()) * (std::f64::consts::TAU * turn).cos()
@@ -48,6 +54,11 @@ fn recorded(rng: &mut ChaCha8Rng, model: &Model, noise: f64) -> Recording {
         *y = 1.2 * *y + drift * n as f64 / 1000.0 + noise * rng.random_range(-1.0..1.0);
     }
     Recording::new(input, output).unwrap()
+}
+
+fn cut(recording: &mut Recording, end: usize) {
+    recording.input.truncate(end);
+    recording.output.truncate(end);
 }
 
 fn by(learner: Learner) -> AdaptOptions {
@@ -123,6 +134,82 @@ fn the_model_after_a_freeze_is_one_from_before_it() {
             continue;
         }
         assert!(kept.iter().any(same), "{what}");
+    }
+}
+
+/// Four fifths of a cycle to a whole one before the end of the recording: too late for a learner.
+#[test]
+fn a_freeze_in_the_last_cycle_is_found() {
+    let mut missed = Vec::new();
+    for seed in 0..60 {
+        let mut rng = ChaCha8Rng::seed_from_u64(1000 + seed);
+        let learner = LEARNERS[seed as usize % LEARNERS.len()];
+        let model = actuator(&mut rng, 11.3);
+        let noise = [0.0, 0.01, 0.1][rng.random_range(0..3)];
+        let samples = rng.random_range(100..300);
+        let mut recording = recorded_in(&mut rng, &model, noise, samples);
+        // Through the whole of a stroke and a part of the next one.
+        let cycles = rng.random_range(5..3000 / samples);
+        let frozen = cycles * samples - rng.random_range(0..samples / 8);
+        let end = frozen + samples * rng.random_range(80..100) / 100;
+        cut(&mut recording, end);
+        let held = recording.output[frozen];
+        for y in &mut recording.output[frozen..] {
+            *y = held + noise * rng.random_range(-1.0..1.0);
+        }
+        let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
+        let what = format!("{seed} {learner:?}: {:?}, {frozen}", adapted.stuck);
+        let [stuck] = &adapted.stuck[..] else {
+            assert!(adapted.stuck.is_empty(), "{what}");
+            missed.push(what);
+            continue;
+        };
+        assert_eq!(stuck.channel, Channel::Output, "{what}");
+        let off = stuck.samples.start.abs_diff(frozen);
+        assert!(off <= if noise == 0.0 { 2 } else { 60 }, "{what}");
+        // What is left is about what learned from the live samples alone, over their last cycle.
+        let squares = |model: &Model| {
+            let simulated = model.simulate(&recording.input[..frozen]).unwrap();
+            let errors = simulated.iter().zip(&recording.output);
+            let last = errors.skip(frozen - samples);
+            last.map(|(h, y)| (h - y).powi(2)).sum::<f64>()
+        };
+        let mut live = recording.clone();
+        cut(&mut live, stuck.samples.start);
+        let live = adapt(&model, &live, &by(learner), Progress::NONE).unwrap();
+        let (learned, without) = (squares(&adapted.model), squares(&live.model));
+        let alone = squares(&model);
+        let most = 1.2 * without.max(alone);
+        assert!(learned <= most, "{what}: {learned} {without} {alone}");
+    }
+    // Most are found, and not all: one way of the model's output is no proof. Noise may carry an
+    // output that froze at the edge of its band out of it, so the run begins anew; and a cycle that
+    // is just whole may be so to the watch and not to the learner. 4 of these 60 are missed.
+    assert!(2 * missed.len() < 60, "{missed:?}");
+}
+
+/// Wherever a recording of a live plant ends, its output is not called frozen.
+#[test]
+fn a_live_recording_may_end_anywhere() {
+    for seed in 0..300 {
+        let mut rng = ChaCha8Rng::seed_from_u64(2000 + seed);
+        let model = actuator(&mut rng, 11.3);
+        let samples = rng.random_range(20..300);
+        let noise = [0.0, 0.01, 0.1][rng.random_range(0..3)];
+        let mut recording = recorded_in(&mut rng, &model, noise, samples);
+        let (offset, gain) = (rng.random_range(-20.0..20.0), rng.random_range(0.05..3.0));
+        let end = rng.random_range(samples / 4..3000);
+        let at = rng.random_range(0..end);
+        cut(&mut recording, end);
+        for (n, y) in recording.output.iter_mut().enumerate() {
+            let share = match seed % 2 {
+                0 => f64::from(n >= at),
+                _ => n as f64 / 3000.0,
+            };
+            *y = *y * (1.0 + share * (gain - 1.0)) + share * offset;
+        }
+        let adapted = adapt(&model, &recording, &by(Learner::Drift), Progress::NONE).unwrap();
+        assert!(adapted.stuck.is_empty(), "{seed}: {:?}", adapted.stuck);
     }
 }
 
