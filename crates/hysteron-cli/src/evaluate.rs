@@ -31,9 +31,13 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let start = args.start.into();
     let evaluation = match folder {
         Some(_) => hysteron::evaluate_from(&model, &recordings, start)?,
-        None => hysteron::evaluate_errors(&model, &recordings, start)?,
+        // The verdict needs the output as well, but no other series.
+        None => Evaluation {
+            output_model: hysteron::forward(&model, &recordings, start)?.output_model,
+            ..hysteron::evaluate_errors(&model, &recordings, start)?
+        },
     };
-    let verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
+    let verdict = Verdict::of_evaluation(&recordings, &evaluation)?;
     if let Some(mut folder) = folder {
         let behind = recordings
             .iter()

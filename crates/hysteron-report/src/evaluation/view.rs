@@ -53,7 +53,7 @@ impl<'a> View<'a> {
                 found,
             });
         }
-        let verdict = Verdict::of_evaluation(model, recording, evaluation).ok();
+        let verdict = Verdict::of_evaluation(recording, evaluation).ok();
         let source = Source::new(model);
         let (time, time_label) = clock(recording);
         Ok(Self {

@@ -45,8 +45,8 @@ pub struct LoopOptions {
     /// How long before it is due the controllers are told the reference, s, from 0. Default 0. An
     /// inverse of a model with a thermal body uses it: it heats or cools in time.
     pub preview_s: f64,
-    /// Samples until a drive moves the output that is read, up to 1001. By default one, and the dead
-    /// time of the model. The inverse solves for the reference of so many samples later.
+    /// Samples until a drive moves the output that is read, up to 1001. By default one, and the
+    /// dead time of the model. The inverse solves for the reference of so many samples later.
     pub delay: Option<usize>,
     /// Test and rule that the PID is tuned by. Default `relay`.
     pub tuning: Tuning,

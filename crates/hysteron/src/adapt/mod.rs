@@ -5,9 +5,9 @@
 //! these come to for a model. `adaptive` is the model that learns sample by sample: by an estimator
 //! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
 //! samples of a `window`, from their `sums`. `mixture` has several of these side by side, each an
-//! `expert` with one of the `shares`; `learns` is the choice among all of these. `load` and `unknown_load` do the
-//! same for the shift of an unknown load. `counts` counts what was done with the samples, `stuck`
-//! finds where a channel stood still, and `drift` tells how far the model moved.
+//! `expert` with one of the `shares`; `learns` is the choice among all of these. `load` and
+//! `unknown_load` do the same for the shift of an unknown load. `counts` counts what was done with
+//! the samples, `stuck` finds where a channel stood still, and `drift` tells how far the model moved.
 
 mod adaptive;
 mod basis;
@@ -170,7 +170,10 @@ pub fn adapt(
     let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
-    let still = stuck::at_the_end(&offline, recordings, &fixed, learned_by);
+    let still = match learned_by.watches() {
+        true => stuck::at_the_end(&offline, recordings, &fixed),
+        false => 0,
+    };
     // The last samples, which are not to be learned from.
     let unsure = probation.max(still);
     let mut learned = Vec::with_capacity(count);

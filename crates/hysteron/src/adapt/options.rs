@@ -278,6 +278,11 @@ impl EstimatorOptions {
         }
     }
 
+    /// Whether a learner with these looks for channels that stand still.
+    pub(super) fn watches(self) -> bool {
+        self.gate().0 > 0.0
+    }
+
     /// The gate, and the readings in a row that pass it where they agree.
     pub(super) fn gate(self) -> (f64, u32) {
         match self {

@@ -1,6 +1,5 @@
 //! Where a channel of a recording stood still, as a learner found it.
 
-use super::EstimatorOptions;
 use crate::model::Model;
 use crate::recording::Recording;
 use hysteron_core::{Channel, Outcome, Reading, Watch};
@@ -32,8 +31,8 @@ fn word<S: Serializer>(channel: &Channel, serializer: S) -> Result<S::Ok, S::Err
 }
 
 impl Stuck {
-    /// The stretches that `outcomes` tell. `fixed` is the output of the model left alone, `tail` what
-    /// [`at_the_end`] found.
+    /// The stretches that `outcomes` tell. `fixed` is the output of the model left alone, `tail`
+    /// what [`at_the_end`] found.
     pub(super) fn all(
         outcomes: &[Outcome],
         recording: &Recording,
@@ -95,13 +94,8 @@ fn began(still: &[f64], moving: &[f64], seen: usize) -> usize {
 /// How many samples at the end of the recordings have an output that seems to stand still, though a
 /// learner cannot see it yet, for want of a whole cycle. `fixed` is the output of the model left
 /// alone.
-pub(super) fn at_the_end(
-    model: &Model,
-    recordings: &[Recording],
-    fixed: &[f64],
-    options: EstimatorOptions,
-) -> usize {
-    let Some(recording) = recordings.last().filter(|_| options.gate().0 > 0.0) else {
+pub(super) fn at_the_end(model: &Model, recordings: &[Recording], fixed: &[f64]) -> usize {
+    let Some(recording) = recordings.last() else {
         return 0;
     };
     let plane = model.plane();

@@ -41,7 +41,10 @@ pub(super) fn adapt(
     let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
-    let still = at_the_end(&offline, recordings, &fixed, learned_by);
+    let still = match learned_by.watches() {
+        true => at_the_end(&offline, recordings, &fixed),
+        false => 0,
+    };
     let unsure = probation.max(still);
     let (mut learned, mut shifts, mut loads) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = adaptive.clone();

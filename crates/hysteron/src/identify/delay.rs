@@ -2,8 +2,8 @@
 //! best what was left out.
 //!
 //! Slow inputs do not tell a dead time from a lag of the same length, and either predicts the same.
-//! A shift that is still better at the longest one tried is taken for a lag, and left to it. A shift
-//! counts only if the output goes on for so long after its input has turned.
+//! A shift that is still better at the longest one tried is taken for a lag, and left to it. A
+//! shift counts only if the output goes on for so long after its input has turned.
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
@@ -84,6 +84,7 @@ pub(super) fn find(
     if loaded || !recordings.iter().all(enough) {
         return Ok(Delay::NONE);
     }
+    let beginning = |recording: &Recording| recording.part(0..recording.len().min(LOOKED_AT));
     let looked_at: Vec<Recording> = recordings.iter().map(beginning).collect();
     let options = FitOptions {
         levels: LEVELS,
@@ -129,19 +130,8 @@ fn goes_on(recordings: &[Recording], sign: Sign, samples: usize) -> bool {
     ways.len() >= REVERSALS && mean > CHANCE * deviation / (ways.len() as f64).sqrt()
 }
 
-/// The beginning of a recording, as much as is looked at.
-fn beginning(recording: &Recording) -> Recording {
-    let head = |values: &Vec<f64>| values[..values.len().min(LOOKED_AT)].to_vec();
-    Recording {
-        time: recording.time.as_ref().map(head),
-        input: head(&recording.input),
-        output: head(&recording.output),
-        load: None,
-        ..recording.clone()
-    }
-}
-
-/// Sum of the squared errors over the blocks left out, and the sign of the output; without the beginning that no shift knows.
+/// Sum of the squared errors over the blocks left out, and the sign of the output; without the
+/// beginning that no shift knows.
 fn squares_left_out(
     recordings: &[Recording],
     options: &FitOptions,

@@ -225,11 +225,11 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Dead time of the actuator, in samples of the recordings: so many samples an input takes until
-    /// the output begins to answer it ([`Delay`](crate::Delay)). [`Auto`](crate::Auto) looks for up
-    /// to 7 and takes them only if they predict parts of the recordings that were left out by a
-    /// tenth better. It finds none in recordings without time at equal distances, with a load, and
-    /// where creep or a lag is asked for, which would take their part.
+    /// Dead time of the actuator, in samples of the recordings: so many samples an input takes
+    /// until the output begins to answer it ([`Delay`](crate::Delay)). [`Auto`](crate::Auto) looks
+    /// for up to 7 and takes them only if they predict parts of the recordings that were left out
+    /// by a tenth better. It finds none in recordings without time at equal distances, with a load,
+    /// and where creep or a lag is asked for, which would take their part.
     #[must_use]
     pub fn delay(mut self, samples: impl Into<Choice<usize>>) -> Self {
         self.options.delay = samples.into();

@@ -1,8 +1,9 @@
 //! Identification: finds the weights of a model from recordings.
 //!
 //! `fit` is the entry point; `options` are its settings, `words` the same as texts. `weights` solves the least-squares
-//! problem. `delay` finds the dead time and `outliers` are found, both first. `choose` selects levels and smoothness. `doubt` estimates how well
-//! the data determine the weights. `stages` identifies the thermal body in front of the operators.
+//! problem. `delay` finds the dead time and `outliers` are found, both first. `choose` selects
+//! levels and smoothness. `doubt` estimates how well the data determine the weights. `stages`
+//! identifies the thermal body in front of the operators.
 //! `advice` and `monotone` warn about data that the model cannot follow.
 
 mod advice;

@@ -2,11 +2,11 @@
 //! identified.
 //!
 //! `actuator` is the model. `operators` are its weighted operators; `body`, `load` and `constants`
-//! are those of the stages around them, and `stages` hands them to the core. `delay` is the dead time
-//! in front. `at_load` is the model
-//! at one load. `state` moves a model sample by sample from its `start`, `surroundings` simulates it
-//! with time and load, and `inverse` inverts it (`policy` says how). `band` is the interval around
-//! the output, and `bounds` where it may really be. `file` reads and writes models; `summary`,
+//! are those of the stages around them, and `stages` hands them to the core. `delay` is the dead
+//! time in front. `at_load` is the model at one load. `state` moves a model sample by sample from
+//! its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it (`policy`
+//! says how). `band` is the interval around the output, and `bounds` where it may really be. `file`
+//! reads and writes models; `summary`,
 //! `smooth`, `validation`, `confidence` and `excitation` are the record of the fit.
 
 mod actuator;

@@ -100,9 +100,9 @@ impl Model {
     }
 
     /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
-    /// Returns how many inputs of the operators were clipped. The inputs are those that act: a state
-    /// knows no dead time, so a caller shifts them ([`Model::acting`]). The time step of the first sample is
-    /// zero, if `surroundings` does not tell the time before it.
+    /// Returns how many inputs of the operators were clipped. The inputs are those that act: a
+    /// state knows no dead time, so a caller shifts them ([`Model::acting`]). The time step of the
+    /// first sample is zero, if `surroundings` does not tell the time before it.
     ///
     /// # Errors
     /// - [`Error::Core`] for an input that is not finite, with its index, a short `output`, and a
@@ -142,8 +142,8 @@ impl Model {
     }
 
     /// The inputs as the operators see them, from the model's start on: behind the thermal body,
-    /// shifted by the load, behind the registration, on the uniform grid of the plane. The inputs are
-    /// those that act ([`Model::acting`]).
+    /// shifted by the load, behind the registration, on the uniform grid of the plane. The inputs
+    /// are those that act ([`Model::acting`]).
     ///
     /// # Errors
     /// As [`Model::run_in`].

@@ -1,17 +1,21 @@
 //! Whether a model is good enough, for what, why it is not better, and what to do next.
 //!
-//! This file makes a [`Verdict`] of a fit or of an evaluation. `parts` tells what an error consists
-//! of, `cause` what is behind it, and `words` says all of it in sentences.
+//! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for;
+//! `parts` tells what an error consists of, `cause` what is behind it, and `words` says all of it in
+//! sentences. `serial` writes it.
 
 mod cause;
+mod grade;
 mod parts;
+mod serial;
 mod words;
 
 pub use cause::Cause;
+pub use grade::{Basis, Grade};
 pub use parts::{ErrorPart, PartKind, error_parts};
 
 use crate::error::Result;
-use crate::evaluate::{Evaluation, begin, evaluate_from};
+use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::Forward;
 use crate::hold_out::HeldOut;
 use crate::model::{Criterion, FitSummary, Model, Start};
@@ -19,42 +23,7 @@ use crate::recording::{Quantity, Recording, no_recordings};
 use crate::rivals::{Rival, RivalKind};
 use crate::series::Errors;
 use crate::series::noise::noise;
-use serde::{Serialize, Serializer};
-
-/// What a model is good for.
-///
-/// The error counts, in percent of the range of the output, on data that the model was not fitted
-/// to. One step less where a simple predictor errs less, and `Poor` where a fifth of the inputs is
-/// outside the plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Grade {
-    /// At most 1 %, or hardly more than the noise of the readings: good enough to drive by its
-    /// inverse alone.
-    Good,
-    /// At most 5 %: useful beside a controller that measures the output.
-    Usable,
-    /// More: not to be driven by.
-    Poor,
-    /// Not known, as it was tested only on what it was fitted to.
-    Untested,
-}
-
-/// What an error was measured on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Basis {
-    /// Another recording than the one fitted.
-    OtherRecording,
-    /// What the user held out of the fit.
-    HeldOut,
-    /// Branches that the fit left out one after the other to choose its options.
-    BranchesLeftOut,
-    /// Parts of branches, where there are too few whole ones.
-    PartsLeftOut,
-    /// The data fitted: it says nothing of others.
-    Fitted,
-}
+use serde::Serialize;
 
 /// The sample with the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -98,8 +67,8 @@ pub struct Verdict {
     pub rmse: f64,
     /// The same in percent; `None` for an output that does not move.
     pub percent: Option<f64>,
-    /// Standard deviation of the white noise of the readings, in the output's unit; zero where it is
-    /// not known.
+    /// Standard deviation of the white noise of the readings, in the output's unit; zero where it
+    /// is not known.
     pub noise: f64,
     /// Errors of the inverse while the output moves; `None` without an inverse, or where it was not
     /// tested.
@@ -164,7 +133,7 @@ impl Verdict {
         let recordings = recordings.as_ref();
         let Some(mut verdict) = Self::unjudged(model) else {
             let evaluation = evaluate_from(model, recordings, Start::Fitted)?;
-            return Self::of_evaluation(model, recordings, &evaluation);
+            return Self::of_evaluation(recordings, &evaluation);
         };
         let samples: usize = recordings.iter().map(Recording::len).sum();
         let first = recordings.first().ok_or_else(no_recordings)?;
@@ -177,8 +146,7 @@ impl Verdict {
             false => recordings,
         };
         let evaluation = evaluate_from(model, looked_at, Start::Fitted)?;
-        let inverse = evaluation.inverse.as_ref().ok();
-        verdict.inverse = inverse.and_then(|inverse| inverse.hold.moving);
+        verdict.inverse = of_inverse(&evaluation);
         verdict.noise = verdict.noise.max(noise_of(looked_at));
         verdict.worst = worst(looked_at, &evaluation.output_model);
         verdict
@@ -189,37 +157,19 @@ impl Verdict {
     }
 
     /// The verdict on a model that was evaluated on `recordings`. The rival is a straight line
-    /// fitted to these recordings themselves, which favours it.
+    /// fitted to these recordings themselves, which favours it. An evaluation that kept no series
+    /// ([`crate::evaluate_errors`]) tells neither the worst sample nor the parts of the error.
     ///
     /// # Errors
-    /// As [`crate::evaluate`], for an `evaluation` that kept no series.
+    /// [`crate::Error::Recording`] for an invalid recording, or none.
     pub fn of_evaluation(
-        model: &Model,
         recordings: &(impl AsRef<[Recording]> + ?Sized),
         evaluation: &Evaluation,
     ) -> Result<Self> {
-        let recordings = recordings.as_ref();
-        let simulated;
-        let output = match evaluation.output_model.is_empty() {
-            false => &evaluation.output_model,
-            true => {
-                let start = match evaluation.estimated_from {
-                    Some(_) => Start::Unknown,
-                    None => Start::Fitted,
-                };
-                let each = recordings.iter().map(|recording| {
-                    let (mut state, _) = begin(model, recording, start)?;
-                    Ok(model.run_over(&mut state, recording)?.0)
-                });
-                simulated = each.collect::<Result<Vec<_>>>()?.concat();
-                &simulated
-            }
-        };
         let run = (evaluation.forward, evaluation.was_fitted);
-        let mut verdict = Self::of_run(recordings, output, run)?;
+        let mut verdict = Self::of_run(recordings.as_ref(), &evaluation.output_model, run)?;
         verdict.causes.extend(cause::outside(evaluation));
-        let inverse = evaluation.inverse.as_ref().ok();
-        verdict.inverse = inverse.and_then(|inverse| inverse.hold.moving);
+        verdict.inverse = of_inverse(evaluation);
         verdict.judge();
         Ok(verdict)
     }
@@ -279,15 +229,8 @@ impl Verdict {
             p if p <= USABLE => Grade::Usable,
             _ => Grade::Poor,
         };
-        let rival_wins = self
-            .causes
-            .iter()
-            .any(|cause| matches!(cause, Cause::Rival { .. }));
-        let rival_wins = rival_wins
-            || self
-                .rival
-                .as_ref()
-                .is_some_and(|(_, rival)| *rival < percent);
+        let rival = self.rival.as_ref();
+        let rival_wins = rival.is_some_and(|(_, rival)| *rival < percent);
         let outside = self
             .causes
             .iter()
@@ -306,6 +249,11 @@ impl Verdict {
         self.causes
             .sort_by(|a, b| b.weight().total_cmp(&a.weight()));
     }
+}
+
+/// The errors of the inverse while the output moves.
+fn of_inverse(evaluation: &Evaluation) -> Option<Errors> {
+    evaluation.inverse.as_ref().ok()?.hold.moving
 }
 
 /// Where the outputs of a model over recordings err most.
@@ -375,42 +323,4 @@ fn noise_of(recordings: &[Recording]) -> f64 {
         (n + len, sum + len * noise * noise)
     });
     (squares / f64::max(samples, 1.0)).sqrt()
-}
-
-/// Numbers as fields, and the sentences as `text`.
-impl Serialize for Verdict {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            grade: Grade,
-            basis: Basis,
-            rmse: f64,
-            percent: Option<f64>,
-            noise: f64,
-            inverse: Option<Errors>,
-            rival: Option<(&'a str, f64)>,
-            causes: Vec<(&'static str, String)>,
-            worst: Option<Worst>,
-            text: String,
-        }
-        let causes = self.causes.iter();
-        Fields {
-            grade: self.grade,
-            basis: self.basis,
-            rmse: self.rmse,
-            percent: self.percent,
-            noise: self.noise,
-            inverse: self.inverse,
-            rival: self
-                .rival
-                .as_ref()
-                .map(|(name, percent)| (name.as_str(), *percent)),
-            causes: causes
-                .map(|cause| (cause.name(), self.sentence(cause)))
-                .collect(),
-            worst: self.worst,
-            text: self.to_string(),
-        }
-        .serialize(serializer)
-    }
 }

@@ -1,5 +1,5 @@
-//! What the error of a model consists of: an offset, a gain, a shift of the input, a delay, a drift,
-//! and what is left, the shape.
+//! What the error of a model consists of: an offset, a gain, a shift of the input, a delay, a
+//! drift, and what is left, the shape.
 
 use crate::recording::Recording;
 use serde::Serialize;

@@ -36,7 +36,7 @@ fn recording(model: &Model, change: impl Fn(usize, f64) -> f64) -> Recording {
 fn judged(model: &Model, recording: &Recording) -> (Verdict, Evaluation) {
     let evaluation = evaluate(model, recording).unwrap();
     (
-        Verdict::of_evaluation(model, recording, &evaluation).unwrap(),
+        Verdict::of_evaluation(recording, &evaluation).unwrap(),
         evaluation,
     )
 }
@@ -222,4 +222,23 @@ fn noise_is_told_from_misfit() {
     );
     assert_eq!(verdict.grade, Grade::Good);
     assert!(verdict.percent.unwrap() > 1.0);
+}
+
+/// Without the series there is no worst sample; all else is the same.
+#[test]
+fn an_evaluation_of_errors_alone_has_no_worst_sample() {
+    let model = model(&[0.5; 78]);
+    let found = recording(&model, |n, y| y + (n as f64 * 0.3).sin());
+    let start = hysteron::Start::On;
+    let errors = hysteron::evaluate_errors(&model, &found, start).unwrap();
+    let verdict = Verdict::of_evaluation(&found, &errors).unwrap();
+    assert_eq!(verdict.worst, None);
+    let run = forward(&model, &found, start).unwrap();
+    let whole = Verdict::of_forward(&found, &run).unwrap();
+    assert_eq!((verdict.grade, verdict.rmse), (whole.grade, whole.rmse));
+    let worst = whole.worst.unwrap();
+    assert_eq!(
+        (worst.measured - worst.modelled).abs(),
+        errors.forward.max_abs
+    );
 }

@@ -37,12 +37,12 @@ pub struct Invert<'a> {
 
 /// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
 /// wanted output, from `state`. It is given early by the dead time of the model, so its status and
-/// the other columns are of a row so much later. For a model with a thermal body the input is the drive to hold since
-/// the row before, and `temperature_model` follows it. A model that knows how far it errs
-/// ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the output may
-/// really be with this input, also where the status is `ok`. Where the clock goes back the model
-/// begins from `state` again ([`Around::repair`]). `out` is finished at the end. `progress` gets the
-/// bytes read.
+/// the other columns are of a row so much later. For a model with a thermal body the input is the
+/// drive to hold since the row before, and `temperature_model` follows it. A model that knows how
+/// far it errs ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the
+/// output may really be with this input, also where the status is `ok`. Where the clock goes back
+/// the model begins from `state` again ([`Around::repair`]). `out` is finished at the end.
+/// `progress` gets the bytes read.
 ///
 /// # Errors
 /// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;

@@ -20,8 +20,9 @@ pub struct Simulate<'a> {
 }
 
 /// Copies `table` to `out` with an additional column `output_model`: the model's output, from
-/// `state`, behind its dead time. Where the clock goes back it begins there again ([`Around::repair`]). With a band, the columns `output_low` and `output_high` follow. `out` is finished at the
-/// end. `progress` gets the bytes read.
+/// `state`, behind its dead time. Where the clock goes back it begins there again
+/// ([`Around::repair`]). With a band, the columns `output_low` and `output_high` follow. `out` is
+/// finished at the end. `progress` gets the bytes read.
 ///
 /// # Errors
 /// - [`crate::Error::File`].
