@@ -106,9 +106,12 @@ def test_a_run_tells_what_is_ahead():
         drives[ahead] = np.array(wire.drives)
         wire, loop = Wire(), Controller(0.1, (0, 1), model=model)
         for n, output in enumerate(target):
-            wire.write(loop.step(output, wire.read(), ahead=target[n + 1 : n + 1 + ahead]).drive)
+            # `run` always tells the target that is due when the drive acts, one sample later.
+            told = target[n + 1 : n + 1 + max(ahead, 1)]
+            wire.write(loop.step(output, wire.read(), ahead=told).drive)
         assert np.array_equal(drives[ahead], wire.drives)
-    assert np.max(drives[20][:30]) > np.max(drives[0][5:30])
+    # The drive of sample 29 is the first that aims at the step of sample 30 without being told more.
+    assert np.max(drives[20][:29]) > np.max(drives[0][5:29])
     with pytest.raises((OverflowError, TypeError)):
         loop.run(Wire(), target, ahead=-1)
 
@@ -117,9 +120,12 @@ def test_run_is_the_loop_written_out(identified):
     trace = controller(identified, policy="anticipate").run(pyhysteron.PreisachPlant(), REFERENCE)
     plant, own = pyhysteron.PreisachPlant(), controller(identified, policy="anticipate")
     headings = pyhysteron.control.headings(REFERENCE, 0.5)
-    for n, (target, heading) in enumerate(zip(REFERENCE, headings, strict=True)):
+    for n, target in enumerate(REFERENCE):
         assert plant.truth()[0] == trace.output[n]
-        action = own.step(target, *plant.read(), heading=heading)
+        # The inverse aims at the target that is due when the drive acts, one sample later.
+        due = min(n + 1, len(REFERENCE) - 1)
+        told = REFERENCE[n + 1 : n + 2]
+        action = own.step(target, *plant.read(), heading=headings[due], ahead=told)
         assert (action.command, action.drive) == (trace.command[n], trace.drive[n])
         plant.write(action.drive)
         plant.advance(INTERVAL)
