@@ -3,6 +3,7 @@
 //! The binaries in it are the same for every model (`binaries/`, made from `hysteron-capi`); they
 //! read the model from the FMU's resources.
 
+mod binaries;
 mod description;
 mod model_text;
 mod options;

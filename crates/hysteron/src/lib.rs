@@ -31,6 +31,8 @@ mod data;
 mod design;
 mod error;
 mod evaluate;
+#[cfg(feature = "files")]
+mod files;
 #[cfg(feature = "data")]
 mod fleet;
 mod forward;
@@ -55,17 +57,20 @@ pub use adapt::{
 pub use batch::BatchModel;
 #[cfg(feature = "data")]
 pub use data::{
-    Added, Around, AtomicFile, AtomicFolder, Budget, Column, ColumnSummary, Columns, Counts,
-    Destination, Growing, Invert, Locked, Memory, Note, NoteKind, Others, Own, PICTURE, Places,
-    ReadOptions, Remark, Repair, RoleDoubt, Roles, Row, STANDARD_OUTPUT, Segment, Simulate,
-    TablePreview, TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table,
-    invert_table, preview_table, preview_table_knowing, printable, python_literal, refuse_one_file,
+    Added, Around, Budget, Column, ColumnSummary, Columns, Counts, Growing, Invert, Memory, Note,
+    NoteKind, Others, PICTURE, Places, ReadOptions, Remark, Repair, RoleDoubt, Roles, Row,
+    STANDARD_OUTPUT, Segment, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
+    inspect_table, invert_table, preview_table, preview_table_knowing, printable, python_literal,
     shell_word, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{
     Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_errors, evaluate_from,
+};
+#[cfg(feature = "files")]
+pub use files::{
+    AtomicFile, AtomicFolder, Destination, Locked, Own, discard_unfinished, refuse_one_file,
 };
 #[cfg(feature = "data")]
 pub use fleet::{

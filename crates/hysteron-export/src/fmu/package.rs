@@ -1,25 +1,20 @@
 //! The archive of an FMU.
 
 use super::Fmi;
+use super::binaries::binaries;
 use hysteron::{Error, Result};
 use std::io::{self, Cursor, Read, Write};
 use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-// Miri would take hours to pack the binaries.
-const LINUX: &[u8] = match cfg!(miri) {
-    false => include_bytes!("../../binaries/linux64/hysteron.so"),
-    true => &[],
-};
-const WINDOWS: &[u8] = match cfg!(miri) {
-    false => include_bytes!("../../binaries/win64/hysteron.dll"),
-    true => &[],
-};
 const LICENCE: &str = include_str!("../../LICENSE-MIT");
 
 const DESCRIPTION: &str = "modelDescription.xml";
-const ENTRIES: usize = 6;
+/// Files beside the binaries.
+const OTHERS: usize = 4;
+/// Files in all: of older versions with two binaries, of FMI 2.0, of FMI 3.0.
+const COUNTS: [usize; 3] = [OTHERS + 2, OTHERS + 4, OTHERS + 5];
 
 pub(super) struct Files {
     pub(super) description: String,
@@ -29,10 +24,7 @@ pub(super) struct Files {
 
 /// The same bytes for the same content: without times, in a fixed order.
 pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
-    let (linux, windows) = match fmi {
-        Fmi::V2 => ("linux64", "win64"),
-        Fmi::V3 => ("x86_64-linux", "x86_64-windows"),
-    };
+    let binaries = binaries(fmi);
     let licence = format!(
         "The binaries are part of hysteron, under the licence below. They hold parts of Rust's \
          standard library (MIT or Apache-2.0, \
@@ -40,10 +32,8 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
          mingw-w64 and of GCC's runtime (GCC Runtime Library Exception). The model in resources/ \
          is its maker's.\n\n{LICENCE}"
     );
-    let entries: [(String, &[u8]); ENTRIES] = [
+    let others: [(String, &[u8]); OTHERS] = [
         (DESCRIPTION.into(), files.description.as_bytes()),
-        (format!("binaries/{linux}/{name}.so"), LINUX),
-        (format!("binaries/{windows}/{name}.dll"), WINDOWS),
         ("resources/model.txt".into(), files.model_text.as_bytes()),
         ("resources/model.json".into(), files.model_json.as_bytes()),
         (
@@ -63,8 +53,12 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
         .unix_permissions(0o644);
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let packed = (|| {
-        for (path, bytes) in &entries {
-            zip.start_file(path.as_str(), options)?;
+        let binaries = binaries.iter().map(|(platform, ending, bytes)| {
+            let path = format!("binaries/{platform}/{name}.{ending}");
+            (path, bytes.as_ref())
+        });
+        for (path, bytes) in others.into_iter().chain(binaries) {
+            zip.start_file(path, options)?;
             zip.write_all(bytes)?;
         }
         zip.finish()
@@ -92,10 +86,10 @@ pub(super) fn is_ours(path: &Path) -> io::Result<bool> {
     let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else {
         return Ok(false);
     };
-    if archive.len() != ENTRIES || archive.offset() != 0 {
+    if !COUNTS.contains(&archive.len()) || archive.offset() != 0 {
         return Ok(false);
     }
-    for n in 0..ENTRIES {
+    for n in 0..archive.len() {
         let entry = archive.by_index_raw(n);
         if !entry.is_ok_and(|entry| entry.last_modified() == Some(DateTime::default())) {
             return Ok(false);

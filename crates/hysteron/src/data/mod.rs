@@ -1,10 +1,9 @@
-//! Reads and writes files: tables, recordings, models and results. This is the only module that
-//! uses the file system (feature `data`).
+//! Reads and writes tables, recordings and results (feature `data`), through `crate::files`.
 //!
 //! `table` reads CSV, Parquet, Arrow and MATLAB files. `recording` turns their columns into recordings.
-//! `output` writes files so that they appear complete or not at all. `cells` writes cells as CSV.
+//! `output` writes tables. `cells` writes cells as CSV.
 //! `positions` keeps where rows are. `run` simulates and inverts tables, a block of rows at a time.
-//! `model`, `design`, `adapted` and `trace` read and write what their names say. `columns` summarises
+//! `design`, `adapted` and `trace` read and write what their names say. `columns` summarises
 //! a table, `preview` shows it, `roles` finds what its columns are, and `printable` makes text safe to show and to
 //! paste.
 
@@ -12,7 +11,6 @@ mod adapted;
 mod cells;
 mod columns;
 mod design;
-mod model;
 mod output;
 mod positions;
 mod preview;
@@ -24,10 +22,7 @@ mod table;
 mod trace;
 
 pub use columns::{ColumnSummary, TableSummary, inspect_table};
-pub use output::{
-    Added, AtomicFile, AtomicFolder, Destination, Locked, Own, STANDARD_OUTPUT, TableWriter,
-    discard_unfinished, refuse_one_file,
-};
+pub use output::{Added, STANDARD_OUTPUT, TableWriter};
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
 pub use preview::{PICTURE, TablePreview, preview_table, preview_table_knowing};
 pub use printable::{printable, python_literal, shell_word};

@@ -1,8 +1,9 @@
 //! Puts tables of models together: those that several machines made of the parts of a fleet.
 
 use super::row::COLUMNS;
-use crate::data::{Destination, RecordWriter, Value, read_records};
+use crate::data::{RecordWriter, Value, read_records};
 use crate::error::{Error, Result};
+use crate::files::Destination;
 use std::collections::HashMap;
 use std::path::PathBuf;
 

@@ -46,13 +46,14 @@ pub use constants::{CreepTerm, StageConstants};
 pub use delay::Delay;
 pub(crate) use delay::UnderWay;
 pub use excitation::Excitation;
-#[cfg(feature = "data")]
+#[cfg(feature = "files")]
 pub(crate) use file::{FORMAT, no_model};
 pub use inverse::{Inverse, Wanted};
 pub use load::{LoadCurves, LoadDependence, LoadPart};
 pub(crate) use load::{bernstein, no_load};
 pub use operators::{FittedStart, OperatorState, Operators, Plane};
 pub use policy::Policy;
+#[cfg(feature = "data")]
 pub(crate) use preview::Preview;
 pub use registration::Registration;
 pub use sign::Sign;

@@ -1,5 +1,6 @@
 //! Gaps in the time of a recording.
 
+#[cfg(feature = "data")]
 use crate::series::clear_branches;
 use crate::series::lost::Turn;
 use crate::series::spread::usual_span;
@@ -21,9 +22,11 @@ pub(crate) fn gaps(time: &[f64]) -> Option<(f64, Vec<usize>)> {
 
 /// A gap is long if the input may have turned in it unseen: more than half of what it takes from
 /// one reversal to the next, and more than so many times the median step.
+#[cfg(feature = "data")]
 const LONG: f64 = 10.0;
 
 /// The indices of samples that follow a long gap.
+#[cfg(feature = "data")]
 pub(crate) fn long_gaps(time: &[f64], input: &[f64]) -> Vec<usize> {
     let Some((median, mut found)) = gaps(time) else {
         return Vec::new();

@@ -8,7 +8,9 @@ mod gaps;
 mod joined;
 mod split;
 
-pub(crate) use gaps::{GAP, gaps, long_gaps, turned_in_gaps};
+#[cfg(feature = "data")]
+pub(crate) use gaps::long_gaps;
+pub(crate) use gaps::{GAP, gaps, turned_in_gaps};
 pub(crate) use joined::no_recordings;
 pub use joined::one_after_the_other;
 pub(crate) use split::split_each;

@@ -9,6 +9,7 @@
 mod errors;
 pub mod filter;
 pub(crate) mod frozen;
+#[cfg(feature = "data")]
 pub(crate) mod interpolate;
 pub(crate) mod jumps;
 pub(crate) mod lost;

@@ -5,9 +5,9 @@
 //! Then come the records: their length, a checksum, the record's key, its values. A record that was
 //! cut off ends the file.
 
-use super::lock::Locked;
 use super::{Kind, Value};
 use crate::error::{Error, Result};
+use crate::files::Locked;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fs::OpenOptions;

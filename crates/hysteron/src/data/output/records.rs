@@ -2,10 +2,10 @@
 //! lists of numbers.
 
 use super::parquet::{io_error, properties};
-use super::{AtomicFile, Destination, Own};
 use crate::data::output::sign::is_our_table;
 use crate::data::table::caught;
 use crate::error::{Error, Result};
+use crate::files::{AtomicFile, Destination, Own};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};

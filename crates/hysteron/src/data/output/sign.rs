@@ -2,10 +2,10 @@
 
 use super::parquet::PROGRAM;
 use crate::data::table::ARROW_FILE;
-use crate::model::Model;
+use crate::files::begins_with;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 /// The columns that commands add to tables. In CSV they are the last ones. Columns of words come
@@ -28,18 +28,6 @@ const ADDED: [&[&str]; 7] = [
 /// Those columns that hold words.
 const WORDS: [&str; 2] = ["status", "outcome"];
 
-/// Whether the file is a model that was fitted or adapted, with exactly the bytes that we would
-/// write. A model written by hand has no fit or other spacing.
-pub(crate) fn is_our_model(path: &Path) -> io::Result<bool> {
-    if !begins_with(path, b"{")? {
-        return Ok(false);
-    }
-    let Ok(text) = String::from_utf8(std::fs::read(path)?) else {
-        return Ok(false);
-    };
-    Ok(Model::from_json(&text).is_ok_and(|model| model.fit.is_some() && model.to_json() == text))
-}
-
 /// Whether the file is a table that a command made.
 pub(crate) fn is_our_table(path: &Path) -> io::Result<bool> {
     if begins_with(path, b"PAR1")? {
@@ -49,14 +37,6 @@ pub(crate) fn is_our_table(path: &Path) -> io::Result<bool> {
     } else {
         csv(path)
     }
-}
-
-fn begins_with(path: &Path, mark: &[u8]) -> io::Result<bool> {
-    let mut head = Vec::new();
-    File::open(path)?
-        .take(mark.len() as u64)
-        .read_to_end(&mut head)?;
-    Ok(head == mark)
 }
 
 /// Other tools put their own name into the metadata when they write a file again.

@@ -4,13 +4,12 @@ use super::added::{Added, AddedCells};
 use super::arrow::ArrowCopy;
 use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
-use super::destination::folder_of;
 use super::sign::is_our_table;
 use super::splice::{Original, Splice};
 use super::spool::Spool;
-use super::{AtomicFile, Destination, Own};
 use crate::data::table::{Block, Growing, Memory, TableReader};
 use crate::error::{Error, Result};
+use crate::files::{AtomicFile, Destination, Own, folder_of};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 

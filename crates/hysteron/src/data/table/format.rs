@@ -1,14 +1,13 @@
 //! Detects the format of a file and opens it with the reader for that format.
 
 use super::budget::Budget;
-use super::hashing::{Hash, Hashing};
 use super::labels::Labels;
 use super::text::{self, Text};
 use super::wanted::Wanted;
 use super::{Source, arrow, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};
-use crate::model::FORMAT;
+use crate::files::{Hash, Hashing, begins_as_json, begins_as_model, contains};
 use bytes::Bytes;
 use std::fs::File;
 use std::io::{Cursor, Read};
@@ -59,31 +58,15 @@ impl Format {
     }
 }
 
-/// Whether a file begins as a model does.
-pub(in crate::data) fn begins_as_model(head: &[u8]) -> bool {
-    begins_as_json(head) && contains(head, FORMAT)
-}
-
 /// What a file is that begins as JSON; none for any other.
 fn json(head: &[u8]) -> Option<&'static str> {
     begins_as_json(head).then(|| match () {
-        () if contains(head, FORMAT) => "this is a model, not a table: name a recording",
+        () if begins_as_model(head) => "this is a model, not a table: name a recording",
         () if contains(head, "hysteron-studio") => {
             "this is a session of the studio, not a table: open it there"
         }
         () => "this is JSON, not a table: save the columns as CSV",
     })
-}
-
-/// An object with a name in it. A table may begin with a brace.
-fn begins_as_json(head: &[u8]) -> bool {
-    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
-    let object = text.trim_ascii_start().strip_prefix(b"{");
-    object.is_some_and(|object| object.trim_ascii_start().starts_with(b"\""))
-}
-
-fn contains(head: &[u8], word: &str) -> bool {
-    head.windows(word.len()).any(|part| part == word.as_bytes())
 }
 
 /// An open file: the names of its columns, and its rows.

@@ -12,7 +12,6 @@ mod budget;
 mod clock;
 mod columns;
 mod format;
-mod hashing;
 mod labels;
 mod machine;
 mod mat;
@@ -27,7 +26,6 @@ mod time;
 mod wanted;
 
 pub use budget::{Budget, Growing, Memory};
-pub(in crate::data) use format::begins_as_model;
 pub use options::ReadOptions;
 pub use remark::Remark;
 
@@ -39,8 +37,8 @@ pub(crate) use labels::Label;
 use crate::data::recording::Places;
 use crate::data::recording::Repair;
 use crate::error::{Error, Place, Result};
+use crate::files::Hash;
 use bytes::Bytes;
-use hashing::Hash;
 use numbers::Numbers;
 pub(in crate::data) use parquet::Pages;
 pub(crate) use parquet::caught;
@@ -415,11 +413,6 @@ impl TableReader {
             problem,
         }
     }
-}
-
-/// SHA-256 in hexadecimal of a whole file.
-pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
-    Hash::file(path)
 }
 
 /// A text shortened to at most 40 characters, for a message.

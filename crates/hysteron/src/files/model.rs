@@ -1,13 +1,10 @@
 //! Reads and writes model files.
 
-use crate::data::output::AtomicFile;
-use crate::data::output::is_our_model;
-use crate::data::output::{Destination, Own};
-use crate::data::table::begins_as_model;
+use super::{AtomicFile, Destination, Own, begins_as_model, begins_with};
 use crate::error::{Error, Result};
 use crate::model::{Model, no_model};
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// The bytes of a file that show what it is.
@@ -61,4 +58,16 @@ impl Model {
     pub fn file<'a>(target: impl Into<Destination<'a>>) -> Result<AtomicFile> {
         AtomicFile::create(target, Own::Marked(is_our_model))
     }
+}
+
+/// Whether the file is a model that was fitted or adapted, with exactly the bytes that we would
+/// write. A model written by hand has no fit or other spacing.
+fn is_our_model(path: &Path) -> io::Result<bool> {
+    if !begins_with(path, b"{")? {
+        return Ok(false);
+    }
+    let Ok(text) = String::from_utf8(std::fs::read(path)?) else {
+        return Ok(false);
+    };
+    Ok(Model::from_json(&text).is_ok_and(|model| model.fit.is_some() && model.to_json() == text))
 }

@@ -166,7 +166,7 @@ pub fn refuse_one_file(first: &Path, second: &Path) -> Result<()> {
 }
 
 /// The folder that contains a path.
-pub(super) fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),

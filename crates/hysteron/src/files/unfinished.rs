@@ -127,7 +127,7 @@ fn builder() -> tempfile::Builder<'static, 'static> {
 }
 
 /// The error without the temporary path, which means nothing to the user.
-pub(super) fn bare(error: io::Error) -> io::Error {
+pub(crate) fn bare(error: io::Error) -> io::Error {
     error.kind().into()
 }
 

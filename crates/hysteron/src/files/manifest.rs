@@ -3,7 +3,7 @@
 //!
 //! The format can also be read by `sha256sum -c`.
 
-use crate::data::table::file_sha256;
+use super::hashing::Hash;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io;
@@ -39,7 +39,7 @@ impl Manifest {
 
     /// Adds a file of a folder.
     pub(super) fn add(&mut self, folder: &Path, name: &str) -> io::Result<()> {
-        let digest = file_sha256(&folder.join(name))?;
+        let digest = Hash::file(&folder.join(name))?;
         self.0.insert(name.to_owned(), digest);
         Ok(())
     }
@@ -69,7 +69,7 @@ impl Manifest {
             return Ok(Self::parse(&std::fs::read_to_string(path).unwrap_or_default()).is_some());
         }
         match self.0.get(name) {
-            Some(digest) => Ok(*digest == file_sha256(&path)?),
+            Some(digest) => Ok(*digest == Hash::file(&path)?),
             None => Ok(false),
         }
     }
