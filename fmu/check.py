@@ -368,6 +368,20 @@ def driven(folder, fmus):
         fmu = fmus["forward-mkp-2", 2]
         run(wine, windows, "misuse", library(fmu), on_windows(fmu), fmu.about["token"])
         print("   wine: the Windows library gives the same numbers and refuses the same")
+    cross = has("aarch64-linux-gnu-gcc", "gcc-aarch64-linux-gnu")
+    emulator = has("qemu-aarch64-static", "qemu-user-static")
+    if cross and emulator:
+        arm = folder / "driver-arm"
+        run(cross, *flags, source, "-o", arm, "-ldl", "-lm")
+        on_arm = [emulator, "-L", "/usr/aarch64-linux-gnu", arm]
+
+        def of_arm(fmu):
+            return fmu.folder / f"binaries/aarch64-linux/{fmu.about['name']}.so"
+
+        replay(on_arm, of_arm, on_linux)
+        fmu = fmus["forward-mkp-2", 2]
+        run(*on_arm, "misuse", of_arm(fmu), *fmu.driven())
+        print("   qemu: the library for ARM gives the same numbers and refuses the same")
     return driver
 
 

@@ -42,13 +42,14 @@ fn export(model: &Model, options: &FmuOptions) -> (Fmu, Vec<u8>) {
 
 fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+    let count = archive.len();
     let mut entry = |n| {
         let mut entry = archive.by_index(n).unwrap();
         let mut content = Vec::new();
         entry.read_to_end(&mut content).unwrap();
         (entry.name().unwrap().into_owned(), content)
     };
-    (0..6).map(&mut entry).collect()
+    (0..count).map(&mut entry).collect()
 }
 
 #[test]
