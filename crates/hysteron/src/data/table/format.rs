@@ -146,6 +146,12 @@ pub(super) fn open(
             let opened = arrow::open(batches, length, (labels, wanted)).map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }
+        #[cfg(not(feature = "hdf5"))]
+        Format::MatV73 => {
+            let problem = "this build does not read MATLAB 7.3: save the file in MATLAB with `-v7`";
+            return Err(refused(problem.to_owned()));
+        }
+        #[cfg(feature = "hdf5")]
         Format::MatV73 => {
             let variables = mat::v73::read(path, held, budget).map_err(refused)?;
             mat::table(variables, budget).map_err(refused)?

@@ -1,6 +1,7 @@
 //! Presents the variables of a MATLAB file as the columns of a table.
 
 pub(super) mod v5;
+#[cfg(feature = "hdf5")]
 pub(super) mod v73;
 
 use super::budget::Budget;
