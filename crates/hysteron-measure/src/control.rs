@@ -1,4 +1,5 @@
-//! Makes docs/measured/control.md: controllers compared on the built-in scenarios, medians over their seeds.
+//! Makes docs/measured/control.md: controllers compared on the built-in scenarios, medians over
+//! their seeds.
 //!
 //! ```text
 //! cargo run --release -p hysteron-measure -- control > docs/measured/control.md
