@@ -65,6 +65,7 @@ function card(file, changed) {
     { class: "card", "aria-label": file.name },
     el("div", { class: "head" }, el("h3", {}, file.name), el("span", { class: "quiet" }, facts)),
     el("div", { class: "columns" }, ...file.columns.map((column) => columnCard(file, column, send))),
+    ...file.doubts.map((doubt) => question(file, doubt, send)),
     file.problem &&
       el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
     prepare.repair(file),
@@ -80,6 +81,22 @@ function card(file, changed) {
       file.marked.length > 0 && el("button", { onclick: () => send("mark", { rows: null }) }, "Fit them again"),
       el("button", { "aria-label": `Close ${file.name}`, onclick: () => send("close") }, "Close"),
     ),
+  );
+}
+
+/**
+ * Asks which column has a role that cannot be told.
+ * @param {import("./api.js").File} file
+ * @param {{role: string, candidates: [string, string][]}} doubt
+ * @param {(request: string, more?: object) => void} send
+ */
+function question(file, { role, candidates }, send) {
+  const choose = (/** @type {string} */ name) => send("columns", { roles: { ...file.roles, [role]: name } });
+  return el(
+    "div",
+    { class: "row question", role: "group", "aria-label": `The ${role} of ${file.name}` },
+    el("strong", {}, candidates.length > 0 ? `Which column is the ${role}?` : `No column looks like the ${role}: choose one above.`),
+    ...candidates.map(([name, why]) => el("button", { "data-key": `doubt-${file.id}-${role}-${name}`, title: why, onclick: () => choose(name) }, name)),
   );
 }
 

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::identify::kept::tell_errors;
 use crate::identify::{Advice, Fit};
 use crate::model::{Model, Start};
-use crate::recording::{HoldOut, Recording, Split};
+use crate::recording::{HoldOut, Recording, Split, split_each};
 use crate::rivals::{Rival, RivalKind};
 use crate::series::Errors;
 use serde::Serialize;
@@ -85,6 +85,8 @@ impl HeldOut {
 /// If rows at the beginning or in the middle are held out, the state of the operators after them is
 /// not known. Then the start is [`Start::Unknown`], whatever `fit` says.
 ///
+/// Rows of several recordings are counted through all of them, one after the other.
+///
 /// ```
 /// use hysteron::{Fit, HoldOut, Recording, fit_holding_out};
 /// let input: Vec<f64> = (0..600).map(|n| (1.0 - (f64::from(n) * 0.05).cos()) * 30.0).collect();
@@ -100,8 +102,7 @@ impl HeldOut {
 ///
 /// # Errors
 /// - As [`Fit::run`] and [`Recording::split`].
-/// - [`Error::Fit`] for rows of several recordings; for a model that depends on time
-///   if anything else is held out than rows at the end, because such a model needs every sample.
+/// - [`Error::Fit`] for a model that depends on time if anything else is held out than rows at the end, because such a model needs every sample.
 ///   [`crate::Dynamics::Auto`] then looks for nothing.
 pub fn fit_holding_out(
     fit: &Fit<'_>,
@@ -115,16 +116,7 @@ pub fn fit_holding_out(
         report.record_in(&mut model);
         return Ok((model, report));
     }
-    if matches!(what, HoldOut::Rows(_)) && recordings.len() > 1 {
-        return Err(Error::Fit(format!(
-            "rows can be held out of one recording, and there are {}",
-            recordings.len()
-        )));
-    }
-    let splits: Vec<Split> = recordings
-        .iter()
-        .map(|recording| recording.split(what))
-        .collect::<Result<_>>()?;
+    let splits = split_each(recordings, what)?;
     let training: Vec<Recording> = splits.iter().flat_map(|s| s.training.clone()).collect();
     let begins_inside = splits.iter().any(|split| split.begins_inside);
     let mut fit = match begins_inside {

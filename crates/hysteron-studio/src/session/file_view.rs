@@ -5,7 +5,7 @@ use super::id::Id;
 use super::opened::{Opened, Part, Purpose, RepairView};
 use super::parts::Parts;
 use super::prepare::Steps;
-use hysteron::{ColumnSummary, Preparation, Quantity, Recording};
+use hysteron::{ColumnSummary, Preparation, Quantity, Recording, RoleDoubt};
 use serde::Serialize;
 
 /// A column as the page shows it.
@@ -37,6 +37,8 @@ pub struct FileView {
     pub roles: Part,
     /// Why these were guessed.
     pub reasons: Vec<String>,
+    /// The roles without a column, and the columns that may have them.
+    pub doubts: Vec<RoleDoubt>,
     /// How the file was understood, and what was repaired.
     pub notes: Vec<String>,
     /// What is wrong with it as a recording.
@@ -66,6 +68,30 @@ pub struct FileView {
 }
 
 impl Opened {
+    /// What is still in doubt: a role that was given to a column is settled, and so is its column.
+    fn doubts(&self) -> Vec<RoleDoubt> {
+        let Part {
+            input,
+            output,
+            time,
+            load,
+        } = &self.roles;
+        let open = |doubt: &&RoleDoubt| match doubt.role {
+            "input" => input.is_none(),
+            _ => output.is_none(),
+        };
+        let is_free = |name: &str| {
+            let taken = [input, output, time, load];
+            taken.iter().all(|role| role.as_deref() != Some(name))
+        };
+        let doubts = self.preview.roles.doubts.iter().filter(open).cloned();
+        let free = doubts.map(|mut doubt| {
+            doubt.candidates.retain(|(name, _)| is_free(name));
+            doubt
+        });
+        free.collect()
+    }
+
     pub(super) fn view(&self) -> FileView {
         let columns = self
             .preview
@@ -89,6 +115,7 @@ impl Opened {
             columns: columns.collect(),
             roles: self.roles.clone(),
             reasons: self.preview.roles.reasons.clone(),
+            doubts: self.doubts(),
             notes: self.notes.clone(),
             problem: self.parts.as_ref().err().cloned(),
             repair: self.repair.clone(),

@@ -75,9 +75,14 @@ impl Session {
                 "open a file, and choose its columns",
             ));
         }
-        let marked: Vec<_> = of(Purpose::Fit)
-            .flat_map(|file| file.marked.clone())
-            .collect();
+        // Rows are counted through all that is fitted.
+        let mut before = 0;
+        let mut marked = Vec::new();
+        for file in of(Purpose::Fit) {
+            let spans = file.marked.iter();
+            marked.extend(spans.map(|(first, last)| (before + first, before + last)));
+            before += file.parts()?.shown.len();
+        }
         let mut others = Vec::new();
         for file in of(Purpose::Validate) {
             others.extend_from_slice(file.parts()?.all());

@@ -5,6 +5,7 @@ use super::id::Id;
 use super::state::{MOST, Session};
 use super::thinned::{Shape, histogram, rows, thinned, when};
 use hysteron::{Recording, Start, forward};
+use hysteron_report::decimate::Point;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -158,14 +159,23 @@ impl Session {
             .map(|n| view.area.shows(&recording, n))
             .collect();
         let first = rows.start;
-        // What is not a number breaks a line.
+        // What is not a number breaks a line: no history goes on from one recording to the next.
+        let begins: Vec<usize> = self.file(view.file)?.parts()?.begins().skip(1).collect();
         let seen = |n: usize, value: f64| if shown[n - first] { value } else { f64::NAN };
+        let broken = |n: usize, point: Point| {
+            let gap = begins.binary_search(&n).is_ok().then_some([f64::NAN; 2]);
+            gap.into_iter().chain([point])
+        };
         let over_time = |of: &dyn Fn(usize) -> f64| {
-            let points = rows.clone().map(|n| [when(&recording, n), seen(n, of(n))]);
+            let points = rows
+                .clone()
+                .flat_map(|n| broken(n, [when(&recording, n), seen(n, of(n))]));
             thinned(points, view.pixels, Shape::OverTime)
         };
         let over_input = |of: &dyn Fn(usize) -> f64| {
-            let points = rows.clone().map(|n| [recording.input[n], seen(n, of(n))]);
+            let points = rows
+                .clone()
+                .flat_map(|n| broken(n, [recording.input[n], seen(n, of(n))]));
             let shape = match view.picture {
                 Picture::ResidualsOverInput => Shape::Dots,
                 _ => Shape::Loop,

@@ -304,3 +304,45 @@ fn a_profile_determines_what_the_recordings_do_not() {
     wrong["heating"] = json!(-1.0);
     assert!(ask(&mut session, wrong).is_err());
 }
+
+/// Two columns may be the output: the page asks, names both, and asks no more once one is chosen.
+#[test]
+fn a_role_in_doubt_is_asked_for() {
+    let mut session = Session::new(1 << 28);
+    let rows = table(0.0);
+    let mut rows = rows.lines().skip(1);
+    let mut text = "temperature [degC],displacement [mm],position [mm]\n".to_owned();
+    for row in rows.by_ref() {
+        let cells: Vec<&str> = row.split(',').collect();
+        text += &format!("{},{},{}\n", cells[1], cells[2], cells[2]);
+    }
+    let file = session.open("two.csv", text.into()).unwrap();
+    let seen = ask(&mut session, json!({"request": "overview"})).unwrap();
+    let doubts = &seen["files"][0]["doubts"];
+    assert_eq!(doubts[0]["role"], "output");
+    let names = doubts[0]["candidates"].as_array().unwrap().iter();
+    let names: Vec<&Value> = names.map(|candidate| &candidate[0]).collect();
+    assert_eq!(names, ["displacement [mm]", "position [mm]"]);
+    let roles = json!({"input": "temperature [degC]", "output": "position [mm]"});
+    let chosen = json!({"request": "columns", "file": file, "roles": roles});
+    let seen = ask(&mut session, chosen).unwrap();
+    assert_eq!(seen["files"][0]["doubts"], json!([]));
+    assert_eq!(seen["files"][0]["problem"], Value::Null);
+}
+
+/// A clock that goes back begins a recording: no line goes from one to the next.
+#[test]
+fn a_line_ends_with_its_recording() {
+    let mut session = Session::new(1 << 28);
+    let once = table(0.0);
+    let again: String = once.lines().skip(1).map(|row| format!("{row}\n")).collect();
+    let file = session.open("twice.csv", (once + &again).into()).unwrap();
+    for picture in ["input", "output", "loop"] {
+        let view = json!({"request": "curves", "file": file, "picture": picture,
+            "pixels": [600, 400]});
+        let seen = ask(&mut session, view).unwrap();
+        let line = seen["lines"][0]["y"].as_array().unwrap();
+        let gaps = line.iter().filter(|y| y.is_null()).count();
+        assert_eq!(gaps, 1, "{picture}");
+    }
+}

@@ -11,6 +11,7 @@ mod split;
 pub(crate) use gaps::{GAP, gaps, long_gaps, turned_in_gaps};
 pub(crate) use joined::no_recordings;
 pub use joined::one_after_the_other;
+pub(crate) use split::split_each;
 pub use split::{HoldOut, Split};
 
 use crate::error::{Error, Result};

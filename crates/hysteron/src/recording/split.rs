@@ -32,7 +32,7 @@ pub enum HoldOut {
     /// This share of the branches, above 0 and up to a third. They are spread over the recording,
     /// in turn rising and falling. The first branch is not among them.
     Branches(f64),
-    /// The rows of these spans, counted from 1.
+    /// The rows of these spans, counted from 1, through all recordings one after the other.
     Rows(Vec<RangeInclusive<usize>>),
     /// Other recordings, as a whole.
     Recordings(Vec<Recording>),
@@ -113,7 +113,7 @@ impl Recording {
         self.check()?;
         match what {
             HoldOut::Branches(share) => self.split_branches(*share),
-            HoldOut::Rows(rows) => self.split_rows(rows),
+            HoldOut::Rows(rows) => Ok(self.parted(marked(rows, self.len())?)),
             HoldOut::Recordings(_) => Ok(Split {
                 training: vec![self.clone()],
                 held_out: vec![false; self.len()],
@@ -189,30 +189,8 @@ impl Recording {
         })
     }
 
-    fn split_rows(&self, rows: &[RangeInclusive<usize>]) -> Result<Split> {
-        let refused = |span: &RangeInclusive<usize>| {
-            Error::Fit(format!(
-                "rows {} to {} cannot be held out: the recording has rows 1 to {}, and some have \
-                 to be left",
-                span.start(),
-                span.end(),
-                self.len()
-            ))
-        };
-        if rows.is_empty() {
-            return Err(Error::Fit(
-                "no rows are named that are to be held out".into(),
-            ));
-        }
-        let mut held_out = vec![false; self.len()];
-        for span in rows {
-            let samples = (1 <= *span.start() && span.start() <= span.end())
-                .then(|| held_out.get_mut(span.start() - 1..*span.end()));
-            samples.flatten().ok_or_else(|| refused(span))?.fill(true);
-            if held_out.iter().all(|held| *held) {
-                return Err(refused(span));
-            }
-        }
+    /// The parts on both sides of what is held out.
+    fn parted(&self, held_out: Vec<bool>) -> Split {
         let mut training = Vec::new();
         let mut begins = Vec::new();
         let runs: Runs<bool> = held_out.iter().copied().collect();
@@ -220,13 +198,53 @@ impl Recording {
             begins.push(samples.start);
             training.push(self.part(samples));
         }
-        Ok(Split {
+        Split {
             begins_inside: begins.iter().any(|begin| *begin > 0),
-            is_head: begins == [0],
+            is_head: begins.iter().all(|begin| *begin == 0),
             training,
             held_out,
-        })
+        }
     }
+}
+
+/// Parts each recording as [`Recording::split`] does. Rows are counted through all of them, and may
+/// hold a whole recording out.
+pub(crate) fn split_each(recordings: &[Recording], what: &HoldOut) -> Result<Vec<Split>> {
+    let HoldOut::Rows(rows) = what else {
+        return recordings.iter().map(|one| one.split(what)).collect();
+    };
+    recordings.iter().try_for_each(Recording::check)?;
+    let lengths = recordings.iter().map(Recording::len);
+    let mut held_out = marked(rows, lengths.sum())?.into_iter();
+    let parted = |one: &Recording| one.parted(held_out.by_ref().take(one.len()).collect());
+    Ok(recordings.iter().map(parted).collect())
+}
+
+/// Which of so many rows are in these spans.
+fn marked(rows: &[RangeInclusive<usize>], count: usize) -> Result<Vec<bool>> {
+    if rows.is_empty() {
+        return Err(Error::Fit(
+            "no rows are named that are to be held out".into(),
+        ));
+    }
+    let mut held_out = vec![false; count];
+    for span in rows {
+        let refused = || {
+            Error::Fit(format!(
+                "rows {} to {} cannot be held out: there are rows 1 to {count}, and some have to \
+                 be left",
+                span.start(),
+                span.end(),
+            ))
+        };
+        let samples = (1 <= *span.start() && span.start() <= span.end())
+            .then(|| held_out.get_mut(span.start() - 1..*span.end()));
+        samples.flatten().ok_or_else(refused)?.fill(true);
+        if held_out.iter().all(|held| *held) {
+            return Err(refused());
+        }
+    }
+    Ok(held_out)
 }
 
 /// Branches spread over those that can be held out, no two of them neighbours. Neighbouring

@@ -203,7 +203,7 @@ fn what_cannot_be_held_out_is_refused() {
     let refused = one_loop.split(&HoldOut::Branches(0.2)).unwrap_err();
     assert!(refused.to_string().contains("three or more"), "{refused}");
     let two = [recording.clone(), recording.clone()];
-    let rows = HoldOut::Rows(vec![1..=10]);
+    let rows = HoldOut::Rows(vec![1..=2 * length]);
     assert!(fit_holding_out(&Fit::new(), &two, &rows).is_err());
     // A lag needs every sample before a row.
     let mut timed = recording;
@@ -215,4 +215,31 @@ fn what_cannot_be_held_out_is_refused() {
     let refused = fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).unwrap_err();
     assert!(refused.to_string().contains("rows at the"), "{refused}");
     assert!(fit_holding_out(&lag, &timed, &HoldOut::Rows(vec![length - 50..=length])).is_ok());
+}
+
+/// Rows are counted through all recordings: a span over the border takes the end of one and the
+/// beginning of the next, and a whole recording may be held out.
+#[test]
+fn rows_of_several_recordings_are_counted_through_all() {
+    let (_, recording) = measured(1, 12, 0.0);
+    let length = recording.len();
+    let three = vec![recording; 3];
+    let fit = Fit::new().levels(8).bootstrap(0);
+    let held = |rows: std::ops::RangeInclusive<usize>| {
+        let what = HoldOut::Rows(vec![rows.clone()]);
+        let (model, report) = fit_holding_out(&fit, &three, &what).unwrap();
+        assert_eq!(report.model.samples as usize, rows.count());
+        let fitted = model.fit.unwrap().samples as u64;
+        assert_eq!(fitted + report.model.samples as u64, 3 * length as u64);
+    };
+    held(2 * length - 20..=2 * length + 30);
+    held(length + 1..=2 * length);
+    held(1..=length + 5);
+    // One recording held out as rows is that recording held out as a file.
+    let rows = HoldOut::Rows(vec![2 * length + 1..=3 * length]);
+    let (as_rows, tested) = fit_holding_out(&fit, &three, &rows).unwrap();
+    let other = HoldOut::Recordings(three[2..].to_vec());
+    let (as_file, told) = fit_holding_out(&fit, &three[..2], &other).unwrap();
+    assert_eq!(as_rows.weights(), as_file.weights());
+    assert_eq!(tested.model.rmse, told.model.rmse);
 }
