@@ -26,7 +26,7 @@ HEAD = """# Time and memory of the command `fit`
 This page is printed by
 
     cargo build --release
-    python docs/fit-command.py target/release/hysteron 1e6 > docs/fit-command.md
+    python docs/fit-command.py target/release/hysteron 1e6 > docs/measured/fit-command.md
 
 `hysteron fit` as a whole process, with reading the file. The last argument is the largest number of
 samples. CPU is that of all threads, memory the highest of the process. By default there is a

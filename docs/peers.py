@@ -26,7 +26,7 @@ HEAD = """# Ours beside peers
 This page is printed by
 
     cargo build --release
-    python docs/peers.py target/release/hysteron > docs/peers.md
+    python docs/peers.py target/release/hysteron > docs/measured/peers.md
 
 Ours and the peer run in turn on the same machine, and the ratio is ours to the peer's. A *limit* is
 a program that only moves the same data. Times of processes are CPU seconds, user and system, if

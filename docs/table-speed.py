@@ -23,7 +23,7 @@ HEAD = """# CPU of tables
 This page is printed by
 
     cargo build --release
-    python docs/table-speed.py target/release/hysteron > docs/table-speed.md
+    python docs/table-speed.py target/release/hysteron > docs/measured/table-speed.md
 
 A table of {rows:,} rows: time, temperature, displacement and a column of words; the CSV has
 {csv:.0f} MB. The model has {levels} levels. Figures are CPU seconds of the whole process, user and

@@ -236,7 +236,7 @@ class RivalScore(_Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Outlier(_Result):
-    """A reading that does not belong to its recording, and had no weight in the fit.
+    """A reading that stands out from its neighbours, and was left out of the fit.
 
     Attributes
     ----------
@@ -381,7 +381,7 @@ class FitSummary(_Result):
     repeats : tuple of SeenFile
         Files that were not fitted, but widened the band.
     outliers : tuple of Outlier
-        Readings that had no weight. The errors do not count them.
+        Readings that were left out of the fit. The errors do not count them.
     validation : Validation or None
         How levels and smoothness were chosen; None where neither was 'auto'.
     hold_out : HeldOut or None

@@ -52,7 +52,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     ridge : float
         Pulls weights that the data hardly move to zero.
     robust : bool
-        Whether readings that do not belong to the recording are found and have no weight.
+        Whether outliers, which stand out from their neighbours, are found and left out of the fit.
     start : {'auto', 'off', 'on', 'rest', 'unknown'}
         State of the operators before the first sample. `fit` estimates 'unknown', and `predict`
         then starts where the model does: `pyhysteron.Model.fitted_start`, or every operator off.

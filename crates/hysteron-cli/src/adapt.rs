@@ -14,7 +14,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         hysteron::refuse_one_file(&args.out, table)?;
         if args.json.json && table.as_os_str() == "-" {
             return Err(
-                "with --json nothing but that goes to standard output: name a file for --table"
+                "with --json standard output has the JSON object only: name a file for --table"
                     .into(),
             );
         }
@@ -127,7 +127,7 @@ fn worse(adapted: &Adapted) -> String {
             error(late.adapting),
             error(late.fixed)
         ),
-        None => "no reading of the last third judges it".into(),
+        None => "no reading of the last third can be compared".into(),
     };
     format!(
         "it ended no better: {found}: see the column `outcome` of --table, try another --method, or \
@@ -169,7 +169,7 @@ fn shift(found: &ShiftFound, model: &Model) -> String {
     if let (Some(load), Some(from), Some(dependence)) = (found.load, found.from, &model.load) {
         let (low, high) = dependence.range();
         line += &format!(
-            " from that at {}; it tells {} {}",
+            " from that at {}: the load is then {} {}",
             dependence.quantity.text(from),
             match load {
                 load if load <= low => "at most",
@@ -260,8 +260,7 @@ fn to_text(
     lines.extend(faults.iter().filter(|_| !refused).cloned());
     if adapted.probation > 0 {
         lines.push(format!(
-            "the last {} samples are on probation, as none judge them: the model has nothing of \
-             them",
+            "the last {} samples are not in the model: no later samples confirm them",
             adapted.probation
         ));
     }
@@ -273,7 +272,7 @@ fn to_text(
         .as_ref()
         .is_some_and(|found| found.shift != 0.0);
     if moved.moved == 0.0 && moved.offset.0 == moved.offset.1 && !shifted {
-        lines.push("nothing was learned: the model is the one that it was".into());
+        lines.push("nothing was learned: the model is unchanged".into());
     }
     lines.join("\n")
 }

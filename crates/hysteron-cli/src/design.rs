@@ -16,7 +16,9 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     }
     let to_stdout = args.out == Path::new("-");
     if to_stdout && args.json.json {
-        return Err("with --json standard output is for that alone: name a file with -o".into());
+        return Err(
+            "with --json standard output has the JSON object only: name a file with -o".into(),
+        );
     }
     let inputs: Vec<&Path> = args.from.iter().map(PathBuf::as_path).collect();
     let table = TableWriter::plain(Some(args.force.target(&args.out, &inputs)))?;

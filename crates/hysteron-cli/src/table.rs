@@ -12,10 +12,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         false => None,
         true => Some(model.band()?.ok_or_else(|| {
             let model = args.model.display();
-            format!(
-                "{model}: the model does not say how certain it is: fit it again with \
-                     --bootstrap 200"
-            )
+            format!("{model}: the model has no 95 % band: fit it again with --bootstrap 200")
         })?),
     };
     let what = ["inputs above the plane", "inputs below its active range"];
@@ -73,8 +70,9 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
             let counts = hysteron::invert_table(&model, state, table, how, out, progress)?;
             if counts.samples > 0 && counts.half_width.is_none() {
                 say(format_args!(
-                    "the model does not know how far it errs, so there are no columns output_low \
-                     and output_high: fit it with --bootstrap 200 or --hold-out branches:20%"
+                    "the model has neither a 95 % band nor an error on data that were not fitted, so \
+                     there are no columns output_low and output_high: fit it with --bootstrap 200 \
+                     or --hold-out branches:20%"
                 ));
             }
             Ok(counts)

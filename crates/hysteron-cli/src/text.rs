@@ -69,7 +69,8 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
     vec![
         format!("operators: {}", classes.collect::<Vec<_>>().join(", ")),
         format!(
-            "rank {} of {}, condition {}; noise of the readings {}, misfit of the model {}",
+            "the data determine {} combinations of {} unknowns, the best of them {} times as well as \
+             the worst; noise of the readings {}, misfit of the model {}",
             confidence.rank,
             confidence.unknowns,
             number(confidence.condition),

@@ -1,4 +1,4 @@
-//! Adapts models over measured recordings, and prints `docs/adaptation.md`:
+//! Adapts models over measured recordings, and prints `docs/measured/adaptation.md`:
 //! `cargo run --release -p hysteron-measure -- adaptation ../shared/data`
 
 use crate::folder;

@@ -1,7 +1,8 @@
-//! Makes docs/control.md: controllers compared on the built-in scenarios, medians over their seeds.
+//! Makes docs/measured/control.md: controllers compared on the built-in scenarios, medians over
+//! their seeds.
 //!
 //! ```text
-//! cargo run --release -p hysteron-measure -- control > docs/control.md
+//! cargo run --release -p hysteron-measure -- control > docs/measured/control.md
 //! ```
 
 use crate::result::Result;

@@ -1,4 +1,4 @@
-//! How much of what was held out the band holds. Prints `docs/coverage.md`:
+//! How much of what was held out the band holds. Prints `docs/measured/coverage.md`:
 //! `cargo run --release -p hysteron-measure -- coverage ../shared/data`
 
 mod synthetic;

@@ -1,4 +1,4 @@
-//! What faults of a recording do to a model. Prints `docs/faults.md`:
+//! What faults of a recording do to a model. Prints `docs/measured/faults.md`:
 //! `cargo run --release -p hysteron-measure -- faults`
 
 #[path = "../../hysteron/tests/faulty/mod.rs"]

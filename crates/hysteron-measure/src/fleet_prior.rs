@@ -1,5 +1,5 @@
 //! What a fleet tells about the next actuator, on **simulated** actuators. Prints
-//! `docs/fleet-prior.md`: `cargo run --release -p hysteron-measure -- fleet-prior`
+//! `docs/measured/fleet-prior.md`: `cargo run --release -p hysteron-measure -- fleet-prior`
 
 use crate::result::Result;
 use hysteron::{Fit, Model, Operator, Plane, Recording, Sign, Spacing, WeightPrior, operators};

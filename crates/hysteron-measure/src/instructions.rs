@@ -1,5 +1,5 @@
 //! Machine instructions for a sample, counted by callgrind: unlike times, they do not depend on
-//! what else the machine does. Prints `docs/instructions.md`. Needs valgrind:
+//! what else the machine does. Prints `docs/measured/instructions.md`. Needs valgrind:
 //! `cargo run --release -p hysteron-measure -- instructions`
 //!
 //! With the name of a task it does that task once, for callgrind to count.

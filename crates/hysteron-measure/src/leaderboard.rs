@@ -1,4 +1,5 @@
-//! Fits every method to the same recordings, predicts others, and prints `docs/leaderboard.md`:
+//! Fits every method to the same recordings, predicts others, and prints
+//! `docs/measured/leaderboard.md`:
 //! `cargo run --release -p hysteron-measure -- leaderboard ../shared/data`
 //!
 //! `--splits FOLDER` writes the tasks as tables instead. `--entry NAME=FOLDER` adds the predictions

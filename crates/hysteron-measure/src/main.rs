@@ -1,4 +1,4 @@
-//! The programs that print the measured pages of `docs/`. One word chooses the program:
+//! The programs that print the pages of `docs/measured/`. One word chooses the program:
 //! `cargo run --release -p hysteron-measure -- PROGRAM [ARGUMENTS]`
 
 mod adaptation;

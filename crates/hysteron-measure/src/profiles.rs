@@ -1,5 +1,5 @@
 //! Compares designed profiles with other experiments at the same rates, and prints
-//! `docs/profiles.md`: `cargo run --release -p hysteron-measure -- profiles`
+//! `docs/measured/profiles.md`: `cargo run --release -p hysteron-measure -- profiles`
 
 use crate::result::Result;
 use hysteron::{DesignOptions, Excitation, Operator, Plane, Rates, design, excitation, ramps};

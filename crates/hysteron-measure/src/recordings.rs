@@ -1,4 +1,4 @@
-//! Fits every recording of a folder, leaves out branches, and prints `docs/recordings.md`:
+//! Fits every recording of a folder, leaves out branches, and prints `docs/measured/recordings.md`:
 //! `cargo run --release -p hysteron-measure -- recordings ../shared/data`
 
 use crate::result::Result;

@@ -1,4 +1,4 @@
-//! Measures the stages of a model on recordings, and prints `docs/stages.md`:
+//! Measures the stages of a model on recordings, and prints `docs/measured/stages.md`:
 //! `cargo run --release -p hysteron-measure -- stages ../shared/data`
 
 use crate::judged::{error, options, read};

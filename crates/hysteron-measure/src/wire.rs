@@ -1,4 +1,5 @@
-//! Runs the scenario `wire` of `track` with both ways to tune the PID, and prints `docs/wire.md`:
+//! Runs the scenario `wire` of `track` with both ways to tune the PID, and prints
+//! `docs/measured/wire.md`:
 //! `cargo run --release -p hysteron-measure -- wire`
 
 use crate::result::Result;

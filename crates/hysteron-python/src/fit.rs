@@ -47,7 +47,7 @@ use pyo3::types::{PyDict, PyString};
 ///     Pulls weights that the data hardly move to zero, 0 to 1; relative to the mean diagonal
 ///     element of the Gram matrix.
 /// robust : bool
-///     Whether readings that do not belong to the recording are found and have no weight.
+///     Whether outliers, which stand out from their neighbours, are found and left out of the fit.
 /// start : {'auto', 'off', 'on', 'rest', 'unknown'}
 ///     State of the operators before the first sample. 'rest': all off, then at an input that the
 ///     fit finds. 'auto': 'rest', unless 'unknown' predicts clearly better.

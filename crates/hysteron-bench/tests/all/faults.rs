@@ -10,7 +10,8 @@ fn drives(ran: &Ran) -> Vec<f64> {
     column(&ran.folder.path().join("run.csv"), "command")
 }
 
-/// The table of docs/bench.md: `cargo test -p hysteron-bench -- --nocapture every_fault`.
+/// The table of docs/measured/bench-faults.md:
+/// `cargo test -p hysteron-bench --test all -- --nocapture every_fault`.
 #[test]
 fn every_fault_ends_as_it_has_to() {
     let plain = drives(&bench(PID, &[]));

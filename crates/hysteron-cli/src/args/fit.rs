@@ -53,8 +53,8 @@ pub(crate) struct FitHow {
     /// the mean diagonal element of the Gram matrix
     #[arg(long, value_name = "SHARE", default_value = "1e-6", allow_hyphen_values = true, value_parser = parse_finite)]
     pub(crate) ridge: f64,
-    /// Readings that do not belong to the recording: `auto` finds them, names them, and gives them
-    /// no weight
+    /// Outliers, which stand out from their neighbours: `auto` finds and lists them, and leaves them
+    /// out of the fit
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) robust: Robust,
     /// State of the operators before the first sample; `auto` takes a rest, unless an unknown

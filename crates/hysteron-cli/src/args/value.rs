@@ -56,10 +56,10 @@ impl From<FitStart> for hysteron::Choice<hysteron::Start> {
     }
 }
 
-/// What happens to readings that do not belong to the recording.
+/// What happens to outliers.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 pub(crate) enum Robust {
-    /// They are found and have no weight
+    /// They are found and left out of the fit
     Auto,
     /// Every reading has the same weight
     Off,

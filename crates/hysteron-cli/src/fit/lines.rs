@@ -82,7 +82,7 @@ fn choice_line(model: &Model, fit: &FitSummary, found: &Validation) -> String {
     )
 }
 
-/// Which readings had no weight: the first few by recording and row, counted from 1.
+/// Which readings were left out: the first few by recording and row, counted from 1.
 fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
     const NAMED: usize = 5;
     let count = fit.outliers.len();
@@ -96,8 +96,9 @@ fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
     });
     let named = named.collect::<Vec<_>>().join("; ");
     let more = if count > NAMED { "; …" } else { "" };
-    (count > 0)
-        .then(|| format!("{count} outliers without weight, and not in these errors: {named}{more}"))
+    (count > 0).then(|| {
+        format!("{count} outliers, left out of the fit and of these errors: {named}{more}")
+    })
 }
 
 /// What the load does.
@@ -139,7 +140,7 @@ fn load_line(model: &Model) -> Option<String> {
     ))
 }
 
-/// The error on loads that were left out, and the loads that had no say.
+/// The error on loads that were left out, and the loads that were not used for that.
 fn loads_left_out(model: &Model, unit: &str) -> Option<String> {
     let found = model.fit.as_ref()?.other.get("load")?;
     let error = match found["left_out_percent"].as_f64() {
@@ -158,7 +159,7 @@ fn loads_left_out(model: &Model, unit: &str) -> Option<String> {
     let silent = match silent.is_empty() {
         true => String::new(),
         false => format!(
-            "; hardly any stroke at {} {unit}: no say",
+            "; hardly any stroke at {} {unit}: not used to choose the law",
             silent.join(", ")
         ),
     };
@@ -231,7 +232,7 @@ fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
 fn prior_line(fit: &FitSummary) -> Option<String> {
     let models = fit.other.get("prior")?.get("models")?;
     Some(format!(
-        "what the recording does not say is taken from {models} other actuators"
+        "what the recording does not determine is taken from {models} other actuators"
     ))
 }
 
@@ -251,8 +252,9 @@ fn start_line(fit: &FitSummary) -> Option<String> {
     let found = fit.other.get("start_found")?;
     let free = found.get("free_nrmse_percent")?.as_f64()?;
     Some(format!(
-        "start found from the first {} samples and kept in the model: all errors are from it; with \
-         every operator free at the start, which no input may lead to, {free:.2} % of the range",
+        "start found from the first {} samples and kept in the model, and used for all errors here; \
+         with a free start of each operator, which perhaps no input reaches, the error is {free:.2} % \
+         of the range",
         found.get("samples")?
     ))
 }

@@ -177,7 +177,7 @@ fn a_model_says_what_its_data_did_not() {
     assert_eq!(confidence["standard_error"].as_array().unwrap().len(), 36);
     let said = text(&run(path, "inspect m.json").stdout);
     assert!(
-        said.contains("well determined") && said.contains("rank"),
+        said.contains("well determined") && said.contains("the data determine"),
         "{said}"
     );
     let simulate = run(path, "simulate m.json run.csv --input x --band -o o.csv");

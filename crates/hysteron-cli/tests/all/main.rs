@@ -16,6 +16,7 @@ mod identification;
 mod interrupted;
 mod messages;
 mod options;
+mod pages;
 mod prepare;
 mod readers;
 mod replacing;

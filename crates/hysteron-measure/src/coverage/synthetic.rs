@@ -22,7 +22,7 @@ const SAMPLES: usize = 30;
 /// Standard deviation of the noise, as a share of the range of the output.
 const NOISE: f64 = 0.005;
 
-/// Prints the section of `docs/coverage.md`.
+/// Prints the section of `docs/measured/coverage.md`.
 pub fn print() -> Result<(), Box<dyn Error>> {
     println!("## Where the truth is known\n");
     println!(

@@ -149,10 +149,11 @@ fn certainty(confidence: &Confidence, view: &View<'_>) -> Markup {
     html! {
         tr { th scope="row" { "Operators" } td { (counts(&confidence.excitation)) } }
         tr {
-            th scope="row" { "Rank" }
+            th scope="row" { "Determined" }
             td {
-                (count(confidence.rank)) " of " (count(confidence.unknowns)) ", condition "
-                (significant(confidence.condition, 3))
+                (count(confidence.rank)) " combinations of " (count(confidence.unknowns))
+                " unknowns, the best " (significant(confidence.condition, 3))
+                " times as well as the worst"
             }
         }
         tr {

@@ -74,7 +74,7 @@ impl Adaptive {
     /// Fits all weights of `model` and its offset again and again to the last samples. It starts
     /// with all operators off.
     ///
-    /// A sample takes constant time, but the one with a refit takes `O(K⁶)`. docs/adaptation.md has
+    /// A sample takes constant time, but the one with a refit takes `O(K⁶)`. docs/learners.md has
     /// the times: a loop must have that time to spare.
     ///
     /// ```

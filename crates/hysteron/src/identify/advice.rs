@@ -129,7 +129,8 @@ impl fmt::Display for Advice {
                 }
                 write!(
                     f,
-                    ". The rest is the prior, whatever the error of the fit is"
+                    ". All else comes from the smoothness that is assumed, however small the error \
+                     of the fit is"
                 )
             }
             Self::OpenStart { operators } => write!(

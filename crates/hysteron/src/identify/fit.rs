@@ -193,7 +193,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Whether readings that do not belong to the recording are found and given no weight.
+    /// Whether outliers, which stand out from their neighbours, are found and left out of the fit.
     #[must_use]
     pub fn robust(mut self, robust: bool) -> Self {
         self.options.robust = robust;

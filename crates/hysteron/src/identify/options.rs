@@ -110,7 +110,7 @@ pub enum Spacing {
 /// | `offset` | free | finite | output with every operator off |
 /// | `smooth` | none; auto | 0 to 1e6 each | along and across the diagonal, see [`Smooth`] |
 /// | `ridge` | 1e-6 | 0 to 1 | pulls weights that the data hardly move to zero |
-/// | `robust` | off; auto | | whether outliers are found and given no weight |
+/// | `robust` | off; auto | | whether outliers are found and left out of the fit |
 /// | `start` | off; auto | off, on, rest, unknown | state of the operators before each recording |
 /// | `load_law` | auto | auto, shift, weights | what a load changes, if there is one |
 /// | `load_degree` | auto | 0 to 5 | order of the weights in the load; auto: by loads left out |
@@ -140,7 +140,7 @@ pub struct FitOptions {
     /// Ridge on the weights, relative to the mean diagonal element of the Gram matrix (after the
     /// offset was eliminated). Without it, operators that the data hardly move take any weight.
     pub ridge: f64,
-    /// Whether readings that do not belong to the recording are found and given no weight.
+    /// Whether outliers, which stand out from their neighbours, are found and left out of the fit.
     pub robust: bool,
     /// State of the operators before the first sample of each recording.
     pub start: Start,

@@ -76,7 +76,7 @@ pub const FIT_OPTIONS: [FitOption; 20] = [
         name: "robust",
         default: "`auto`",
         range: "`auto`, `off`",
-        purpose: "finds outliers and gives them no weight",
+        purpose: "finds outliers and leaves them out of the fit",
     },
     FitOption {
         name: "start",

@@ -59,7 +59,7 @@ impl Model {
         surroundings: Surroundings<'_>,
     ) -> Result<(Vec<f64>, Vec<f64>)> {
         let Some(band) = self.band()? else {
-            let what = "the model does not say how certain it is";
+            let what = "the model has no 95 % band";
             let bootstrap = Setting::number("bootstrap", 200);
             let remedy = Remedy::new("fit it again with {}", [bootstrap]);
             return Err(Error::Fit(what.into()).remedied(remedy));

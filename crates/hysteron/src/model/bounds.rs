@@ -67,7 +67,7 @@ impl Model {
         surroundings: Surroundings<'_>,
     ) -> Result<(Vec<f64>, Vec<f64>)> {
         let Some(bounds) = self.bounds()? else {
-            let what = "the model does not know how far it errs";
+            let what = "the model has neither a 95 % band nor an error on data not fitted";
             let bootstrap = Setting::number("bootstrap", 200);
             let remedy = Remedy::new("fit it again with {}", [bootstrap]);
             return Err(Error::Fit(what.into()).remedied(remedy));
@@ -199,6 +199,11 @@ mod tests {
         assert_eq!((low[0], high[0]), (output - half, output + half));
         let unknown = model(None, errors(-1.0));
         let refused = unknown.bounds_in(&unknown.start(), &[50.0], around);
-        assert!(refused.unwrap_err().to_string().contains("how far it errs"));
+        assert!(
+            refused
+                .unwrap_err()
+                .to_string()
+                .contains("neither a 95 % band")
+        );
     }
 }

@@ -100,7 +100,7 @@ impl Verdict {
                 format!("only {branches} branches were recorded: what other paths do is a guess")
             }
             Cause::Misfit { misfit, noise } => format!(
-                "{} of it are the model's, not noise ({})",
+                "{} of it is what the model cannot follow; the noise of the readings is {}",
                 self.output.text(*misfit),
                 self.output.text(*noise)
             ),
@@ -174,14 +174,14 @@ impl Verdict {
                 "evaluate it on another recording: the same actuator on another day may differ",
                 [],
             ),
-            _ if is_good => Remedy::new("take it home: invert, control, export", []),
+            _ if is_good => Remedy::new("use it: invert, control, export", []),
             Some(Cause::Outside { share }) if *share > OUTSIDE => Remedy::new(
                 "fit a recording that covers this range, or check the unit of the input",
                 [],
             ),
             Some(Cause::Part(part)) => match part.kind {
                 PartKind::Gain if is_odd(part) => Remedy::new(
-                    "check the unit of the output, and whose recording this is",
+                    "check the unit of the output, and that the recording is of this actuator",
                     [],
                 ),
                 PartKind::Offset | PartKind::Gain | PartKind::Shift => Remedy::new(
@@ -203,7 +203,7 @@ impl Verdict {
                 ),
             },
             Some(Cause::Noise { .. }) => Remedy::new(
-                "average the readings, or use {}, which is kept where it helps",
+                "average the readings, or use {}, whose steps are taken only where they help",
                 [Setting::on("prepare")],
             ),
             _ => Remedy::new(

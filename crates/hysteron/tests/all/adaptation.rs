@@ -501,7 +501,7 @@ fn a_measured_alloy_is_followed_to_another_stress() {
     });
     let model = Fit::from(FitOptions::plain()).run(&before).unwrap();
     let adapted = adapt(&model, &after, &AdaptOptions::default(), Progress::NONE).unwrap();
-    // docs/adaptation.md: a tenth.
+    // docs/measured/adaptation.md: a tenth.
     assert!(
         adapted.again.rmse < 0.25 * adapted.whole.fixed.rmse,
         "{:?}",

@@ -674,7 +674,7 @@ fn a_curve_is_taken_only_where_there_is_one() {
 
 #[test]
 fn the_page_has_the_constants_that_stages_declare() {
-    let page = include_str!("../../../../docs/model.md");
+    let page = include_str!("../../../../docs/constants.md");
     for stage in hysteron_core::Stages::<f64>::declared() {
         for constant in stage.constants {
             use hysteron_core::Unit;
@@ -694,12 +694,12 @@ fn the_page_has_the_constants_that_stages_declare() {
                 constant.range.words(),
                 constant.meaning
             );
-            assert!(page.contains(&row), "docs/model.md has no row {row}");
+            assert!(page.contains(&row), "docs/constants.md has no row {row}");
         }
         let row = format!("| {} | ", stage.name);
         assert!(
             page.contains(&row),
-            "docs/model.md does not name {}",
+            "docs/constants.md does not name {}",
             stage.name
         );
     }
