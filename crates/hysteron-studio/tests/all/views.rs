@@ -337,6 +337,11 @@ fn a_line_ends_with_its_recording() {
     let once = table(0.0);
     let again: String = once.lines().skip(1).map(|row| format!("{row}\n")).collect();
     let file = session.open("twice.csv", (once + &again).into()).unwrap();
+    ask(
+        &mut session,
+        json!({"request": "mend", "file": file, "on": true}),
+    )
+    .unwrap();
     for picture in ["input", "output", "loop"] {
         let view = json!({"request": "curves", "file": file, "picture": picture,
             "pixels": [600, 400]});
