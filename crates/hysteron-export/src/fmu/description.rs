@@ -18,7 +18,7 @@ pub(super) fn xml(
     variables: &[Variable],
 ) -> Result<String> {
     let about = about(model, options.inverse);
-    let written = write((name, token), &about, options.fmi, variables);
+    let written = write((name, token), (&about, step(model)), options.fmi, variables);
     let text = written.map(String::from_utf8);
     match text {
         Ok(Ok(text)) => Ok(text + "\n"),
@@ -39,9 +39,20 @@ fn about(model: &Model, inverse: bool) -> String {
     }
 }
 
+/// The step of a default experiment: a tenth of the shortest time constant, or of 0.1 s for a model
+/// without time.
+fn step(model: &Model) -> f64 {
+    let body = model.thermal.iter();
+    let body = body.flat_map(|body| [body.tau_heating, body.tau_cooling]);
+    let creep = model.creep().into_iter().map(|term| term.tau);
+    let all = body.chain(creep).chain([model.lag()]);
+    let shortest = all.filter(|tau| *tau > 0.0).fold(0.1, f64::min);
+    0.1 * shortest
+}
+
 fn write(
     (name, token): (&str, &str),
-    about: &str,
+    (about, step): (&str, f64),
     fmi: Fmi,
     variables: &[Variable],
 ) -> io::Result<Vec<u8>> {
@@ -75,6 +86,12 @@ fn write(
                 category.with_attributes(attributes).write_empty()?;
                 Ok(())
             })?;
+        let stop = format!("{:?}", 1000.0 * step);
+        let step = format!("{step:?}");
+        let times = [("startTime", "0"), ("stopTime", &stop), ("stepSize", &step)];
+        xml.create_element("DefaultExperiment")
+            .with_attributes(times)
+            .write_empty()?;
         xml.create_element("ModelVariables")
             .write_inner_content(|xml| {
                 variables.iter().try_for_each(|variable| match fmi {
