@@ -43,7 +43,7 @@ fn open(browser: &mut Chromium, samples: usize, folder: &Path, width: u32) -> Ta
         title: "a play",
         shown: Shown::Evaluation {
             model: &model,
-            recording: &recording,
+            recordings: recording.as_ref(),
             evaluation: &evaluate(&model, &recording).unwrap(),
         },
         made: Made::default(),

@@ -50,6 +50,10 @@ impl Subject for View<'_> {
         ]
     }
 
+    fn begins(&self) -> (usize, &[usize]) {
+        (self.recording.len(), &self.begins)
+    }
+
     fn simulated(&self) -> Option<Simulated> {
         self.is_simulated().then_some(Simulated {
             page: Simulated::RECORDING,

@@ -11,7 +11,7 @@ fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
         title,
         shown: Shown::Evaluation {
             model: &fixture.model,
-            recording: &fixture.recording,
+            recordings: fixture.recording.as_ref(),
             evaluation: &fixture.evaluation,
         },
         made: Made::default(),

@@ -121,6 +121,25 @@ pub struct RivalView {
     pub trail: Vec<[f64; 2]>,
 }
 
+/// Ends that are apart, in order.
+fn ordered((a, b): (f64, f64)) -> Option<(f64, f64)> {
+    let way = (b - a).abs();
+    (way > 0.0 && way.is_finite()).then(|| (a.min(b), a.max(b)))
+}
+
+/// The inputs that move the model: what was read wrongly once is none of them.
+fn inputs(model: &Model) -> Option<(f64, f64)> {
+    match model.thermal {
+        Some(_) => ordered(model.drive_range()),
+        None => ordered(model.active_range()),
+    }
+}
+
+/// The outputs from every operator off to every operator on.
+fn stroke(model: &Model) -> Option<(f64, f64)> {
+    ordered(model.output_range())
+}
+
 impl Drive {
     /// The model of a fit, with every operator off and at its lowest input.
     ///
@@ -145,10 +164,11 @@ impl Drive {
             rival: None,
             wanted: None,
             moves: Vec::new(),
-            inputs: fitted.input,
-            outputs: fitted.output,
+            inputs: inputs(&model).unwrap_or(fitted.input),
+            outputs: stroke(&model).unwrap_or(fitted.output),
             model,
         };
+        drive.way.input = drive.inputs.0;
         drive.push(drive.inputs.0)?;
         Ok(drive)
     }

@@ -148,7 +148,9 @@ impl Job {
                 (model, Some(held_out))
             }
         };
-        let verdict = Verdict::of_fit(&model, &self.recordings)?.lines(spelt);
+        let verdict = Verdict::of_fit(&model, &self.recordings)?;
+        let inverse = verdict.inverse;
+        let verdict = verdict.lines(spelt);
         let verdict = verdict
             .into_iter()
             .map(|(heading, text)| (heading.to_owned(), text));
@@ -177,9 +179,12 @@ impl Job {
             validated: self.validated,
             model: Arc::new(model),
             held_out,
+            inverse,
             advice,
             verdict,
             courses: BTreeMap::new(),
+            bands: BTreeMap::new(),
+            held: BTreeMap::new(),
             reached: None,
         })
     }

@@ -85,13 +85,23 @@ pub(super) fn thinned(
     (x, y)
 }
 
-/// How often values occur: the middles of bars, and the share of each in percent.
+/// The ends of a scale that a few values far away do not set.
+fn fair_ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
+        return (0.0, 0.0);
+    };
+    let few = (values.len() / 200).max(1).min(values.len() / 2);
+    let inner = (values[few], values[values.len() - 1 - few]);
+    let way = inner.1 - inner.0;
+    (low.max(inner.0 - way), high.min(inner.1 + way))
+}
+
+/// How often values occur: the middles of bars, and the share of each in percent. The outermost bars
+/// count what is beyond them.
 pub(super) fn histogram(values: impl Iterator<Item = f64> + Clone) -> Points {
-    let ends = values
-        .clone()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, value| {
-            (ends.0.min(value), ends.1.max(value))
-        });
+    let ends = fair_ends(values.clone());
     let width = ((ends.1 - ends.0) / BARS as f64).max(f64::MIN_POSITIVE);
     let mut counts = [0_u32; BARS];
     let mut all = 0.0;
