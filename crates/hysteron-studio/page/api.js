@@ -11,7 +11,8 @@
 /** @typedef {{files: File[], fits: Fit[], jobs: JobView[], best: number|null, best_by: string, options: Option[], memory: [number, number]}} Overview */
 /** @typedef {{fit: number|null, raw: boolean, x: (number|null)[], y: (number|null)[]}} Line */
 /** @typedef {[(number|null)[], (number|null)[]]} Points */
-/** @typedef {{picture: string, x: string, y: string, lines: Line[], samples: number, span: [number, number]|null, begins: number[], marked: [number, number][], held: [number, number][], band: [Points, Points]|null, outliers: [number, number][]}} Curves */
+/** @typedef {{low: number, high: number, beyond: boolean}} Ends */
+/** @typedef {{picture: string, x: string, y: string, lines: Line[], ends: [Ends|null, Ends|null], samples: number, span: [number, number]|null, begins: number[], marked: [number, number][], held: [number, number][], band: [Points, Points]|null, outliers: [number, number][]}} Curves */
 
 const way = document.querySelector('meta[name="hysteron-session"]') ? await import("./local.js") : await import("./http.js");
 

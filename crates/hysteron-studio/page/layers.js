@@ -36,9 +36,10 @@ export function buttons(file, fit, changed) {
  * The band and the outliers as traces. The band lies below all lines.
  * @param {import("./api.js").Curves} curves
  * @param {number} place of the fit in the list
+ * @param {[number, number] | null} height of the picture; outliers beyond it are drawn at its edge
  * @returns {[object[], object[]]} below the lines and above them
  */
-export function traces({ band, outliers }, place) {
+export function traces({ band, outliers }, place, height) {
   const below = [];
   if (band && on.has("band")) {
     const [low, high] = band.map(([x, y]) => pieces(x, y));
@@ -53,7 +54,7 @@ export function traces({ band, outliers }, place) {
     below.push({ ...area, mode: "lines", fill: "toself", fillcolor: tint(place), line: { width: 0 }, hoverinfo: "skip", name: "95 % band" });
   }
   const above = outliers.length > 0 && on.has("outliers")
-    ? [{ x: outliers.map(([x]) => x), y: outliers.map(([, y]) => y), mode: "markers", name: "outliers", marker: { symbol: "x-thin", size: 9, line: { width: 2, color: ink("bad") } } }]
+    ? [{ x: outliers.map(([x]) => x), y: outliers.map(([, y]) => (height ? Math.min(height[1], Math.max(height[0], y)) : y)), mode: "markers", name: "outliers", marker: { symbol: "x-thin", size: 9, line: { width: 2, color: ink("bad") } } }]
     : [];
   return [below, above];
 }
@@ -88,7 +89,7 @@ export function shapes({ held, marked, begins }, named) {
   const spans = on.has("held") ? [...held.map(span(ink("held"), "held out")), ...marked.filter((one) => !isPast(one)).map(span(ink("marked"), "for validation"))] : [];
   const line = (/** @type {number} */ x, /** @type {number} */ n) => ({
     type: "line", xref: "x", yref: "paper", x0: x, x1: x, y0: 0, y1: 1, line: { width: 1, dash: "dot", color: ink("quiet") },
-    label: named && begins.length < 12 ? { text: String(n + 2), textposition: "end", textangle: 0, xanchor: "left", font: { size: 11, color: ink("quiet") } } : {},
+    label: named && begins.length < 12 ? { text: String(n + 2), textposition: "end", textangle: 0, xanchor: "left", yanchor: "top", font: { size: 11, color: ink("quiet") } } : {},
   });
   return [...spans, ...(on.has("segments") ? begins.slice(0, 200).map(line) : [])];
 }

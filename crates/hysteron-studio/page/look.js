@@ -3,7 +3,7 @@
 import { ask } from "./api.js";
 import { by, el, fill } from "./dom.js";
 import * as layers from "./layers.js";
-import { archive, draw, fair, on, stroke } from "./plot.js";
+import { archive, draw, on, stroke } from "./plot.js";
 import * as plane from "./plane.js";
 import * as play from "./play.js";
 
@@ -126,6 +126,13 @@ async function redraw() {
   if (mine === now.asked && now.drawn.size > 0) await plane.show(now.overview, now.drawn);
 }
 
+/** The ends with some room; null for all that there is. @param {import("./api.js").Ends | null} ends @returns {[number, number] | null} */
+const scale = (ends) => {
+  if (!ends || now.everything) return null;
+  const room = 0.05 * (ends.high - ends.low || Math.abs(ends.high) || 1);
+  return [ends.low - room, ends.high + room];
+};
+
 /**
  * @param {string[]} which its name and its place
  * @param {number} mine
@@ -146,19 +153,18 @@ async function picture([band, id], mine) {
     connectgaps: false,
   }));
   const overTime = OVER_TIME.has(band);
-  const [below, above] = band === "histogram" ? [[], []] : layers.traces(curves, place(leading()));
   const isPart = now.area.input !== null || now.area.output !== null;
   if (band === "output") {
     Object.assign(now, { span: curves.span, samples: curves.samples });
     if (!now.window && !isPart) now.whole = curves.span;
   }
-  // Far samples do not set the scale, and what was read is no reason to widen it.
-  const scale = (/** @type {"x"|"y"} */ axis) => (now.everything ? null : fair(curves.lines.filter((line) => !line.raw).flatMap((line) => line[axis])));
+  // A few samples far from all others do not set the scale.
   const isLoop = band === "loop";
-  const [across, up] = [isLoop || band === "residuals_over_input" ? scale("x") : null, band === "histogram" ? null : scale("y")];
-  const range = overTime ? now.window ?? curves.span : band === "histogram" ? null : now.area.input ?? across?.ends;
-  const height = isLoop ? now.area.output ?? up?.ends : up?.ends;
-  if (across?.isBeyond || up?.isBeyond) now.beyond.add(band);
+  const [across, up] = curves.ends;
+  const range = overTime ? now.window ?? curves.span : now.area.input ?? scale(across);
+  const height = isLoop ? now.area.output ?? scale(up) : scale(up);
+  const [below, above] = band === "histogram" ? [[], []] : layers.traces(curves, place(leading()), height);
+  if (across?.beyond || up?.beyond) now.beyond.add(band);
   else now.beyond.delete(band);
   await draw(node, [...below, ...lines, ...above], {
     x: curves.x, y: curves.y, shapes: [...(overTime ? layers.shapes(curves, band === "output") : []), ...play.shapes(id)], barmode: "overlay", bargap: 0,

@@ -72,7 +72,7 @@ function card(file, changed) {
     ...file.doubts.map((doubt) => question(file, doubt, send)),
     file.problem &&
       el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
-    file.repair && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note)))),
+    file.repair && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))), el("button", { class: "first", "data-key": `repair-${file.id}`, onclick: () => send("mend", { on: true }) }, "Repair rows")),
     file.notes.length > 0 && el("ul", { class: "notes" }, ...file.notes.map((note) => el("li", {}, note))),
     segments(file),
     el("details", {}, el("summary", { class: "quiet" }, "Why these columns?"), el("ul", { class: "notes quiet" }, ...file.reasons.map((reason) => el("li", {}, reason)))),
@@ -80,7 +80,7 @@ function card(file, changed) {
       "div",
       { class: "row" },
       el("label", {}, "This file is ", purpose),
-      (file.mend || file.problem || file.repair) && el("label", {}, el("input", { type: "checkbox", "data-key": `mend-${file.id}`, checked: file.mend, onchange: (/** @type {any} */ e) => send("mend", { on: e.target.checked }) }), " Repair rows"),
+      file.mend && el("label", {}, el("input", { type: "checkbox", "data-key": `mend-${file.id}`, checked: file.mend, onchange: (/** @type {any} */ e) => send("mend", { on: e.target.checked }) }), " Repair rows"),
       file.marked.length > 0 && el("button", { class: "chip", "data-key": `marked-${file.id}`, onclick: () => task.show("split") }, `${file.marked.length} ${file.marked.length === 1 ? "span" : "spans"} held out`),
     ),
   );

@@ -26,14 +26,19 @@ export function at(file, time, overview, drawn) {
   return show(overview, drawn);
 }
 
-/** Round inputs at their places between the levels of a plane. @param {number[]} levels */
+/** Round inputs at their places between the levels of a plane, far enough apart. @param {number[]} levels */
 function ticks(levels) {
-  const place = (/** @type {number} */ value) => {
-    const after = Math.max(1, levels.findIndex((level) => level >= value));
-    return after - 1 + (value - levels[after - 1]) / (levels[after] - levels[after - 1]);
-  };
-  const values = levels.length > 1 ? rounds(levels[0], levels[levels.length - 1]) : levels;
-  return { tickvals: levels.length > 1 ? values.map(place) : [0], ticktext: values.map((value) => shown(value)), showgrid: false, zeroline: false };
+  /** @type {[number, number][]} */
+  const found = [];
+  const last = levels.length - 1;
+  const every = Math.max(1, last / 7);
+  for (let n = 0; n + 1 <= last; n++) {
+    const next = found.length > 0 ? found[found.length - 1][0] + every : -0.5;
+    // The roundest number between these levels: levels may lie close together in one part.
+    const value = rounds(levels[n], levels[n + 1]).find((value) => n + (value - levels[n]) / (levels[n + 1] - levels[n]) >= next && value < levels[n + 1]);
+    if (value !== undefined) found.push([n + (value - levels[n]) / (levels[n + 1] - levels[n]), value]);
+  }
+  return { tickvals: found.map(([place]) => place), ticktext: found.map(([, value]) => shown(value)), showgrid: false, zeroline: false };
 }
 
 const STEPS = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];
@@ -89,7 +94,7 @@ export async function show(overview, drawn) {
     hovertemplate: `α %{customdata[0]}, β %{customdata[1]}${plain(unit(seen.unit))}: %{z:.4g}<extra></extra>`,
     colorbar: isClass ? bar(by("plot-plane").clientWidth < 480) : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
   }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: axis, yaxis: { ...axis }, dragmode: false });
-  by("plane-caption").textContent = seen.sample
+  by("plane-text").textContent = seen.sample
     ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off.`
-    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample for its staircase.";
+    : "One cell for each operator, which switches on at β and off at α. Click a sample for its staircase.";
 }

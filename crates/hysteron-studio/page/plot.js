@@ -28,36 +28,18 @@ export function stroke(place) {
 export const tint = (place) => `${colour(Math.max(0, place))}33`;
 
 /**
- * The ends of a scale that a few values far from all others do not set, and whether there are such.
- * @param {(number | null)[]} values
- * @returns {{ends: [number, number], isBeyond: boolean} | null} null for too few values
- */
-export function fair(values) {
-  const sorted = /** @type {number[]} */ (values.filter((value) => value !== null)).sort((a, b) => a - b);
-  if (sorted.length < 20) return null;
-  const few = Math.max(1, Math.floor(sorted.length / 200));
-  const [low, high] = [sorted[few], sorted[sorted.length - 1 - few]];
-  const [first, last] = [sorted[0], sorted[sorted.length - 1]];
-  const way = high - low || last - first || 1;
-  // A few samples may go as far again as all others do.
-  const [isLow, isHigh] = [first < low - way, last > high + way];
-  const ends = [isLow ? low : first, isHigh ? high : last];
-  const room = 0.06 * (ends[1] - ends[0] || 1);
-  return { ends: [ends[0] - room, ends[1] + room], isBeyond: isLow || isHigh };
-}
-
-/**
- * Round numbers within two ends, some six of them.
+ * The roundest numbers between two ends: one, two or three of them.
  * @param {number} low
  * @param {number} high
  */
 export function rounds(low, high) {
-  const rough = (high - low) / 6;
-  if (!(rough > 0)) return [low];
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = /** @type {number} */ ([1, 2, 5, 10].find((n) => n * power >= rough)) * power;
-  const first = Math.ceil(low / step - 1e-9);
-  return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, n) => (first + n) * step);
+  for (let power = 10 ** Math.ceil(Math.log10(high - low || 1)); power > 0; power /= 10) {
+    for (const step of [5 * power, 2 * power, power]) {
+      const first = Math.ceil(low / step - 1e-9) * step;
+      if (first <= high) return [first, first + step, first + 2 * step].filter((value) => value <= high);
+    }
+  }
+  return [low];
 }
 
 /** Pictures follow the width of their place. */

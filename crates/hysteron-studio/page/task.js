@@ -27,7 +27,7 @@ export function show(name) {
   const before = open;
   open = name;
   by("task").hidden = !name;
-  document.body.dataset.task = name ?? "";
+  document.body.dataset.open = name ?? "";
   for (const [other, title] of TASKS) {
     by(other).hidden = other !== name;
     button(other).setAttribute("aria-expanded", String(other === name));

@@ -127,12 +127,14 @@ fn ordered((a, b): (f64, f64)) -> Option<(f64, f64)> {
     (way > 0.0 && way.is_finite()).then(|| (a.min(b), a.max(b)))
 }
 
-/// The inputs that move the model: what was read wrongly once is none of them.
-fn inputs(model: &Model) -> Option<(f64, f64)> {
-    match model.thermal {
+/// The inputs that move the model, of those that were recorded.
+fn inputs(model: &Model, recorded: (f64, f64)) -> (f64, f64) {
+    let active = match model.thermal {
         Some(_) => ordered(model.drive_range()),
         None => ordered(model.active_range()),
-    }
+    };
+    let both = active.map(|(low, high)| (low.max(recorded.0), high.min(recorded.1)));
+    both.filter(|(low, high)| low < high).unwrap_or(recorded)
 }
 
 /// The outputs from every operator off to every operator on.
@@ -164,7 +166,7 @@ impl Drive {
             rival: None,
             wanted: None,
             moves: Vec::new(),
-            inputs: inputs(&model).unwrap_or(fitted.input),
+            inputs: inputs(&model, fitted.input),
             outputs: stroke(&model).unwrap_or(fitted.output),
             model,
         };

@@ -164,11 +164,12 @@ impl Session {
             return Ok(Vec::new());
         };
         let begins: Vec<usize> = self.file(view.file)?.parts()?.begins().collect();
-        let row = |outlier: &hysteron::Outlier| {
-            let recording = outlier.recording.checked_sub(before)?;
-            begins.get(recording)?.checked_add(outlier.sample)
+        let row = |(recording, sample): (usize, usize)| {
+            let recording = recording.checked_sub(before)?;
+            begins.get(recording)?.checked_add(sample)
         };
-        let rows = found.iter().filter_map(row).filter(|n| seen.shows(*n));
+        let found = found.iter().map(|one| (one.recording, one.sample));
+        let rows = found.filter_map(row).filter(|n| seen.shows(*n));
         let points = rows.filter_map(|n| view.picture.point(seen.recording, Some(&course), n));
         Ok(points.take(OUTLIERS).map(|[x, y]| (x, y)).collect())
     }

@@ -6,7 +6,7 @@ use super::layers::Layers;
 use super::parts::Parts;
 use super::seen::Seen;
 use super::state::{MOST, Session};
-use super::thinned::{histogram, when};
+use super::thinned::{Ends, fair_ends, histogram, when};
 use hysteron::{Recording, Start, forward};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -99,6 +99,8 @@ pub struct Curves {
     pub y: String,
     /// The lines.
     pub lines: Vec<Line>,
+    /// What the axes show, as far as the lines say it: a few samples far away are left out.
+    pub ends: [Option<Ends>; 2],
     /// Samples in the window and the area.
     pub samples: usize,
     /// The time of the first and of the last of them.
@@ -192,6 +194,29 @@ impl Session {
             };
             lines.push(line(Some(*fit), points));
         }
+        let fair = |of: &dyn Fn(usize) -> f64| fair_ends(seen.kept().map(of));
+        let input_ends = || fair(&|n| recording.input[n]);
+        let of_courses = |of: &dyn Fn(&Arc<Vec<f64>>, usize) -> f64| {
+            let each = courses.iter();
+            each.filter_map(|(_, course)| fair(&|n| of(course, n)))
+                .reduce(Ends::with)
+        };
+        let up = match view.picture {
+            Picture::Input => input_ends(),
+            Picture::Output | Picture::Loop => {
+                let modelled = of_courses(&|course, n| course[n]);
+                [fair(&measured), modelled]
+                    .into_iter()
+                    .flatten()
+                    .reduce(Ends::with)
+            }
+            Picture::Residuals | Picture::ResidualsOverInput => of_courses(&residual),
+            Picture::Histogram => None,
+        };
+        let across = match view.picture {
+            Picture::Loop | Picture::ResidualsOverInput => input_ends(),
+            _ => None,
+        };
         // Short, because it stands beside a low picture.
         let difference = match &recording.output_quantity.unit {
             Some(unit) => format!("residual [{unit}]"),
@@ -210,6 +235,7 @@ impl Session {
             x,
             y,
             lines,
+            ends: [across, up],
             samples: seen.kept().count(),
             span: seen.kept().next().map(|n| {
                 let last = seen.kept().next_back().unwrap_or(n);

@@ -54,4 +54,5 @@ pub use prepare::Steps;
 pub use request::{Overview, Request, Response, Told};
 pub use state::Session;
 pub use take_home::{Download, Take};
+pub use thinned::Ends;
 pub use wish::Wish;

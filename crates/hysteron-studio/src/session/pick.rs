@@ -91,7 +91,7 @@ impl Session {
         let fitted = self.fitted(fit)?;
         let files = fitted.files.iter().chain(&fitted.validated).copied();
         let files: Vec<Id> = files.collect();
-        let mut worst = None;
+        let mut worst: Option<(f64, Id, usize)> = None;
         for file in files {
             let Ok(recording) = self.file(file).and_then(|file| file.recording().cloned()) else {
                 continue;
