@@ -29,7 +29,7 @@ export async function show(overview) {
     save({ name: "pictures.zip", blob: zip(files) });
   };
   const samples = (/** @type {string} */ what) => take({ what, ...shownViews().views("output") }).then(save, () => {});
-  const code = el("pre", { tabindex: 0, "aria-label": "What was clicked, as text" });
+  const code = el("pre", { tabindex: 0, role: "group", "aria-label": "What was clicked, as text" });
   const language = (/** @type {string} */ what, /** @type {string} */ text) =>
     el("button", { "data-key": `as-${what}`, "aria-pressed": String(now.language === what), onclick: () => ((now.language = what), show(overview)) }, text);
   fill(

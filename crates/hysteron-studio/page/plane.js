@@ -2,7 +2,7 @@
 
 import { ask } from "./api.js";
 import { by, el, fill, shown, unit } from "./dom.js";
-import { draw, plain, rounds } from "./plot.js";
+import { draw, plain, roundest, rounds } from "./plot.js";
 
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
 export const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
@@ -26,19 +26,29 @@ export function at(file, time, overview, drawn) {
   return show(overview, drawn);
 }
 
-/** Round inputs at their places between the levels of a plane, far enough apart. @param {number[]} levels */
+/** The place of an input between the levels of a plane. @param {number[]} levels @param {number} value */
+const place = (levels, value) => {
+  const after = Math.max(1, levels.findIndex((level) => level >= value));
+  return after - 1 + (value - levels[after - 1]) / (levels[after] - levels[after - 1]);
+};
+
+/** Round inputs at their places between the levels of a plane. @param {number[]} levels */
 function ticks(levels) {
-  /** @type {[number, number][]} */
-  const found = [];
   const last = levels.length - 1;
   const every = Math.max(1, last / 7);
-  for (let n = 0; n + 1 <= last; n++) {
-    const next = found.length > 0 ? found[found.length - 1][0] + every : -0.5;
-    // The roundest number between these levels: levels may lie close together in one part.
-    const value = rounds(levels[n], levels[n + 1]).find((value) => n + (value - levels[n]) / (levels[n + 1] - levels[n]) >= next && value < levels[n + 1]);
-    if (value !== undefined) found.push([n + (value - levels[n]) / (levels[n + 1] - levels[n]), value]);
-  }
-  return { tickvals: found.map(([place]) => place), ticktext: found.map(([, value]) => shown(value)), showgrid: false, zeroline: false };
+  const apart = (/** @type {number[]} */ values) => {
+    /** @type {[number, number][]} */
+    const found = [];
+    for (const value of values) {
+      const at = place(levels, value);
+      if (found.length === 0 || at - found[found.length - 1][0] >= 0.7 * every) found.push([at, value]);
+    }
+    return found;
+  };
+  let found = last > 0 ? apart(rounds(levels[0], levels[last])) : [];
+  // Levels may lie close together in one part: then the roundest number between each two of them.
+  if (found.length < 4) found = apart(levels.slice(1).flatMap((level, n) => roundest(levels[n], level)));
+  return { tickvals: found.map(([at]) => at), ticktext: found.map(([, value]) => shown(value)), showgrid: false, zeroline: false };
 }
 
 const STEPS = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];

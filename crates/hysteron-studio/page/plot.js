@@ -28,18 +28,31 @@ export function stroke(place) {
 export const tint = (place) => `${colour(Math.max(0, place))}33`;
 
 /**
- * The roundest numbers between two ends: one, two or three of them.
+ * Round numbers within two ends, some six of them.
  * @param {number} low
  * @param {number} high
  */
 export function rounds(low, high) {
-  for (let power = 10 ** Math.ceil(Math.log10(high - low || 1)); power > 0; power /= 10) {
+  const rough = (high - low) / 6;
+  const power = 10 ** Math.floor(Math.log10(rough || 1));
+  const step = /** @type {number} */ ([1, 2, 5, 10].find((n) => n * power >= rough)) * power;
+  const first = Math.ceil(low / step - 1e-9);
+  return Array.from({ length: Math.max(0, Math.floor(high / step + 1e-9) - first + 1) }, (_, n) => (first + n) * step);
+}
+
+/**
+ * The roundest number from `low` on and below `high`; none where there is no room.
+ * @param {number} low
+ * @param {number} high
+ */
+export function roundest(low, high) {
+  for (let power = 10 ** Math.ceil(Math.log10(high - low)); power > 1e-9 * (high - low); power /= 10) {
     for (const step of [5 * power, 2 * power, power]) {
       const first = Math.ceil(low / step - 1e-9) * step;
-      if (first <= high) return [first, first + step, first + 2 * step].filter((value) => value <= high);
+      if (first < high) return [first];
     }
   }
-  return [low];
+  return [];
 }
 
 /** Pictures follow the width of their place. */
@@ -75,7 +88,7 @@ export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, aligned = fal
     ...more,
   };
   // On a narrow page a finger scrolls: the buttons zoom.
-  if (narrow && layout.dragmode === "zoom") layout.dragmode = /** @type {any} */ (false);
+  if (innerWidth < 700 && layout.dragmode === "zoom") layout.dragmode = /** @type {any} */ (false);
   node.setAttribute("role", "img");
   node.setAttribute("aria-label", `${y} over ${x}`);
   sizes.observe(node);

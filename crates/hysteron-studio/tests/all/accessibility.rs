@@ -40,11 +40,17 @@ fn everybody_can_use_the_page() {
     browser.value(&tab, &format!("{axe}; 0"));
     assert_eq!(violations(&mut browser, &tab), json!([]), "empty");
     browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(&tab, "document.querySelector('#plot-loop .scatterlayer path')");
+    browser.wait(
+        &tab,
+        "document.querySelector('#plot-loop .scatterlayer path')",
+    );
     browser.value(&tab, "document.querySelector('[name=levels]').value = '12'");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.wait(&tab, "document.querySelector('#fits .badge')");
-    browser.wait(&tab, "document.querySelector('#plot-plane .heatmaplayer image')");
+    browser.wait(
+        &tab,
+        "document.querySelector('#plot-plane .heatmaplayer image')",
+    );
     for theme in ["light", "dark"] {
         let choose = format!(
             "document.documentElement.dataset.theme === '{theme}' || document.querySelector('#theme').click()"
