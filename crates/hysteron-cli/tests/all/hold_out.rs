@@ -152,7 +152,10 @@ fn what_cannot_be_held_out_is_refused() {
         ("rows:0-10", "rows 1 to 900"),
         ("rows:10-901", "rows 1 to 900"),
         ("missing.csv", "missing.csv"),
-        ("rows:1-9 --hold-out branches:20%", "one part of the recording"),
+        (
+            "rows:1-9 --hold-out branches:20%",
+            "one part of the recording",
+        ),
     ] {
         let refusal = refused(path, &format!("{FIT} --hold-out {what} -o n.json"));
         assert!(refusal.contains(said), "{what}: {refusal}");

@@ -337,7 +337,11 @@ fn a_line_ends_with_its_recording() {
     let once = table(0.0);
     // Other rows: the same ones would be there twice.
     let again = table(0.01);
-    let again: String = again.lines().skip(1).map(|row| format!("{row}\n")).collect();
+    let again: String = again
+        .lines()
+        .skip(1)
+        .map(|row| format!("{row}\n"))
+        .collect();
     let file = session.open("twice.csv", (once + &again).into()).unwrap();
     let mend = json!({"request": "mend", "file": file, "on": true});
     ask(&mut session, mend).unwrap();
