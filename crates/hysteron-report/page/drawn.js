@@ -104,8 +104,9 @@ class Drawn {
         const first = line.name !== "" && !listed.has(line.name);
         listed.add(line.name);
         const drawn = trace(line, n, first);
-        // Only an area that turns back needs the line before it once more.
-        return line.fill && !line.forward ? between(drawn, trace(lines[l - 1], n, false)) : drawn;
+        // An area that turns back, or has gaps, needs the line before it once more.
+        const isWhole = line.forward && !drawn.y.includes(null);
+        return line.fill && !isWhole ? between(drawn, trace(lines[l - 1], n, false)) : drawn;
       }),
     );
     // Areas and marks have no line of samples: these are for the legend alone.

@@ -229,7 +229,7 @@ fn rows_of_several_recordings_are_counted_through_all() {
     let held = |rows: std::ops::RangeInclusive<usize>| {
         let what = HoldOut::Rows(vec![rows.clone()]);
         let (model, report) = fit_holding_out(&fit, &three, &what).unwrap();
-        assert_eq!(report.model.samples as usize, rows.count());
+        assert_eq!(report.model.samples, rows.count());
         let fitted = model.fit.unwrap().samples as u64;
         assert_eq!(fitted + report.model.samples as u64, 3 * length as u64);
     };
