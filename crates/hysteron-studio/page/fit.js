@@ -123,7 +123,7 @@ function card(overview, fit, place, { isOpen, drawn, draw, changed }) {
   const best = fit.id === overview.best;
   const rival = fit.held_out?.rivals.reduce((a, b) => (a.rmse < b.rmse ? a : b));
   const wins = rival && rival.rmse < (fit.held_out?.model.rmse ?? 0);
-  const options = Object.entries(fit.options).map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";
+  const options = Object.entries(fit.options).filter(([name]) => name !== "levels").map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";
   const [grade, meaning] = (fit.verdict[0]?.[1] ?? "").split(": ");
   const toggle = (/** @type {any} */ event) => (event.target.checked ? drawn.add(fit.id) : drawn.delete(fit.id), draw());
   const error = (/** @type {string} */ name, /** @type {{rmse: number, nrmse_percent: number|null} | null | undefined} */ errors, /** @type {string} */ of, kind = "") =>

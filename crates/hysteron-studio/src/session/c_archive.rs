@@ -50,10 +50,11 @@ fn readme(model: &Model, made: &CExport, files: &[(String, String)]) -> String {
         "The model in C99, for a microcontroller: no heap, no library, no global variables.\n\n\
          \x20   make && printf '20\\n60\\n20\\n' | ./demo\n\n\
          reads inputs from standard input, one a line, and prints each with the output of the\n\
-         model{}. On a target, compile all files but main.c, and do what main.c does.\n\n\
+         model{}.\n\
+         On a target, compile all files but main.c, and do what main.c does.\n\n\
          Input: {}\nOutput: {}\n",
         match made.inverse {
-            true => " and the input\nthat its inverse finds for that output",
+            true => ", and with the input that its inverse finds for that output",
             false => "",
         },
         plain(&model.input),
