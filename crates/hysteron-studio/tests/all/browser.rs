@@ -546,13 +546,13 @@ fn two_pages_show_the_same_and_a_fit_is_cancelled() {
     for tab in [&one, &two] {
         browser.wait(tab, "!document.querySelector('#jobs button')");
         assert_eq!(
-            browser.value(tab, "document.querySelectorAll('#fits tr').length"),
+            browser.value(tab, "document.querySelectorAll('#fits article').length"),
             0
         );
     }
     studio.end();
     // The server is gone: the page says so.
-    browser.value(&one, "document.querySelector('[data-key^=mend]').click()");
+    browser.value(&one, "document.querySelector('#files [title=Close]').click()");
     browser.wait(
         &one,
         "document.querySelector('#fault').textContent.includes('does not answer')",
