@@ -552,7 +552,10 @@ fn two_pages_show_the_same_and_a_fit_is_cancelled() {
     }
     studio.end();
     // The server is gone: the page says so.
-    browser.value(&one, "document.querySelector('#files [title=Close]').click()");
+    browser.value(
+        &one,
+        "document.querySelector('#files [title=Close]').click()",
+    );
     browser.wait(
         &one,
         "document.querySelector('#fault').textContent.includes('does not answer')",
