@@ -215,6 +215,33 @@ fn paper_has_the_pictures_and_a_phone_the_whole_width() {
 }
 
 #[test]
+fn titles_stay_and_a_page_in_the_dark_is_dark() {
+    let Some(mut browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let tab = open(&mut browser, 500, folder.path(), 1280);
+    for figure in [TIME, LOOPS, RESIDUALS, "residuals-input"] {
+        show(&mut browser, &tab, figure);
+        let title = format!(
+            "(() => {{ const figure = document.querySelector('#{figure}');
+             const title = figure.querySelector('figcaption b').textContent.replace(/^Figure \\d+\\. |\\.$/g, '');
+             return [...figure.querySelectorAll('.plot .annotation-text')].some((words) => words.textContent === title); }})()"
+        );
+        assert_eq!(browser.value(&tab, &title), json!(true), "{figure}");
+    }
+    // What is over time has the width of the page.
+    let width = format!("document.querySelector('#{TIME} .plot').clientWidth > 1150");
+    assert_eq!(browser.value(&tab, &width), json!(true));
+    let ground = "getComputedStyle(document.body).backgroundColor";
+    assert_eq!(browser.value(&tab, ground), json!("rgb(255, 255, 255)"));
+    browser.scheme(&tab, "dark");
+    assert_ne!(browser.value(&tab, ground), json!("rgb(255, 255, 255)"));
+    // Paper is white.
+    browser.media(&tab, "print");
+    assert_eq!(browser.value(&tab, ground), json!("rgb(255, 255, 255)"));
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
+}
+
+#[test]
 fn a_long_recording_keeps_its_peaks_and_its_page_small() {
     let Some(mut browser) = browser() else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -97,8 +97,14 @@ export function shapes(id) {
 
 addEventListener("keydown", (event) => {
   const target = /** @type {HTMLElement} */ (event.target);
-  const inside = target === document.body || (target.closest?.("#look") && !target.closest("button, select, input:not([type=range])"));
-  if (event.key !== " " || !inside || by("look").hidden) return;
+  const inside = target === document.body || (target.closest?.("#look") && !target.closest("button, select, input"));
+  const isSlider = target.id === "play-at";
+  if (by("look").hidden || !(inside || isSlider)) return;
+  const [low, high] = now.range;
+  const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+  if (event.key === " ") toggle();
+  // The slider moves itself.
+  else if (way && !isSlider) to(Math.min(high, Math.max(low, (now.at ?? low) + (way * (high - low)) / Math.max(1, now.steps - 1))));
+  else return;
   event.preventDefault();
-  toggle();
 });
