@@ -9,6 +9,7 @@ const BARS: usize = 60;
 
 /// Of fewer values, none is taken for far from the others.
 const FEW: usize = 20;
+const MANY: usize = 50_000;
 
 /// The time of a sample, or its number from 1.
 pub(super) fn when(recording: &Recording, n: usize) -> f64 {
@@ -113,12 +114,15 @@ impl Ends {
 
 /// The ends of a scale that a few values far from all others do not set; `None` for no values.
 pub(super) fn fair_ends(values: impl Iterator<Item = f64>) -> Option<Ends> {
-    let mut values: Vec<f64> = values.collect();
+    let values: Vec<f64> = values.collect();
     let (low, high) = hysteron::range(&values);
-    if values.is_empty() || values.len() < FEW {
+    if values.len() < FEW {
         let beyond = false;
         return (low <= high).then_some(Ends { low, high, beyond });
     }
+    // Some of many say as well where most lie.
+    let each = values.len().div_ceil(MANY);
+    let mut values: Vec<f64> = values.iter().step_by(each).copied().collect();
     // As many may lie beyond at each end.
     let few = (values.len() / 200).max(1);
     let last = values.len() - 1;
