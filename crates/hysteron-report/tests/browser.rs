@@ -220,11 +220,12 @@ fn titles_stay_and_a_page_in_the_dark_is_dark() {
     let folder = tempfile::tempdir().unwrap();
     let tab = open(&mut browser, 500, folder.path(), 1280);
     for figure in [TIME, LOOPS, RESIDUALS, "residuals-input"] {
+        // A long one is cut short above the figure.
         show(&mut browser, &tab, figure);
         let title = format!(
             "(() => {{ const figure = document.querySelector('#{figure}');
              const title = figure.querySelector('figcaption b').textContent.replace(/^Figure \\d+\\. |\\.$/g, '');
-             return [...figure.querySelectorAll('.plot .annotation-text')].some((words) => words.textContent === title); }})()"
+             return [...figure.querySelectorAll('.plot .annotation-text')].some((words) => words.textContent.startsWith(title.slice(0, 24))); }})()"
         );
         assert_eq!(browser.value(&tab, &title), json!(true), "{figure}");
     }
