@@ -907,7 +907,7 @@ def fit(
     curve: int | Literal['auto', 'off'] = "off",
     bootstrap: int | None = None,
     repeats: Recording | Sequence[Recording] | None = None,
-    hold_out: str | Recording | Sequence[Recording] | None = None,
+    hold_out: str | Recording | Sequence[str | Recording] | None = None,
     thermal: Literal["first-order", True, False] | None = None,
     prior: WeightPrior | None = None,
     time: _Times | None = None,

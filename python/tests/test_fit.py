@@ -243,6 +243,7 @@ def test_what_is_held_out_takes_no_part(recording, truth):
         (f"rows:{rows - 499}-{rows}", [500]),
         (session(truth, 30, 1), [1500]),
         ([session(truth, 30, 1), session(truth, 20, 2)], [3000]),
+        ([f"rows:{rows - 499}-{rows}", session(truth, 30, 1)], [2000]),
     ]:
         tested = pyhysteron.fit(recording, hold_out=what, **options).fit.hold_out
         assert tested.model.samples in samples
@@ -275,6 +276,7 @@ def test_a_rival_that_wins_where_data_were_held_out_is_a_warning():
         ("half", pyhysteron.FitError, "`half` cannot be held out"),
         (0.2, TypeError, "`hold_out` is 0.2"),
         ([], pyhysteron.FitError, "nothing was held out"),
+        (["20%", "rows:1-9"], ValueError, "two parts"),
     ],
 )
 def test_what_cannot_be_held_out(recording, what, error, message):

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &args::Demo) -> Result<()> {
         title: "MKP model of a simulated NiTi tension spring",
         shown: Shown::Evaluation {
             model: &demo.model,
-            recording: &demo.prepared[1],
+            recordings: demo.prepared[1].as_ref(),
             evaluation: &demo.evaluation,
         },
         made: typed.made(),

@@ -2,10 +2,9 @@
 
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
-use crate::{args, model, recording, text};
+use crate::{args, model, prepare, recording, text};
 use hysteron::{
     AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording, Verdict,
-    one_after_the_other,
 };
 use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
@@ -24,10 +23,16 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let columns = Columns {
         input: &args.input,
         output: &args.output,
-        time: args.time.as_deref(),
+        time: args.prepare.time.as_deref(),
         load: load.as_deref(),
     };
     let recordings = recording::segments(&args.data, columns, &args.repair)?;
+    let count = recordings.len();
+    let recordings = recordings.into_iter().enumerate().map(|(n, recording)| {
+        let prepared = prepare::asked_for(recording, &args.prepare, &recording::which(n, count));
+        Ok(prepared?.0)
+    });
+    let recordings: Vec<Recording> = recordings.collect::<Result<_>>()?;
     let start = args.start.into();
     let evaluation = match folder {
         Some(_) => hysteron::evaluate_from(&model, &recordings, start)?,
@@ -44,14 +49,13 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
             .map(|recording| model.behind_body(recording));
         let behind = behind.map(|recording| recording.map(Cow::into_owned));
         let behind: Vec<Recording> = behind.collect::<hysteron::Result<_>>()?;
-        let shown = one_after_the_other(&behind).ok_or("there is no recording")?;
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let typed = Typed::now()?;
         let report = Report {
             title: &title,
             shown: Shown::Evaluation {
                 model: &model,
-                recording: &shown,
+                recordings: &behind,
                 evaluation: &evaluation,
             },
             made: typed.made(),

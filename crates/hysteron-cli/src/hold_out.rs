@@ -10,19 +10,19 @@ pub(crate) fn what(
     args: &args::Fit,
     read: impl Fn(&Path) -> Result<Vec<Recording>>,
 ) -> Result<Option<HoldOut>> {
-    let mut files = Vec::new();
+    let (mut files, mut held) = (Vec::new(), None);
     for what in &args.how.hold_out {
-        match what {
-            args::HoldOut::File(file) => files.extend(read(file)?),
-            args::HoldOut::Part(part) if args.how.hold_out.len() == 1 => {
-                return Ok(Some(part.clone()));
-            }
-            args::HoldOut::Part(_) => {
-                return Err("--hold-out: several are possible for files only".into());
+        match (what, &held) {
+            (args::HoldOut::File(file), _) => files.extend(read(file)?),
+            (args::HoldOut::Part(part), None) => held = Some(part.clone()),
+            (args::HoldOut::Part(_), Some(_)) => {
+                return Err(
+                    "--hold-out: one part of the recording can be held out, and any files".into(),
+                );
             }
         }
     }
-    Ok((!files.is_empty()).then_some(HoldOut::Recordings(files)))
+    Ok(HoldOut::together(held, files))
 }
 
 /// A line for the model, and a table of the rivals.

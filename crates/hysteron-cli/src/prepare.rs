@@ -58,24 +58,31 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     print(&said.join("\n"))
 }
 
-/// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to
-/// standard error, behind `which` recording it is; it is returned for the JSON.
+/// The recording after the steps that were asked for: none without `--prepare` or a step's own option. The report goes to
+/// standard error, behind `which` recording it is.
+pub(crate) fn asked_for(
+    recording: Recording,
+    args: &args::PrepareFirst,
+    which: &str,
+) -> Result<(Recording, Option<Preparation>)> {
+    let options = steps_of(args);
+    if options == PrepareOptions::all(Step::Off) {
+        return Ok((recording, None));
+    }
+    let (prepared, report) = hysteron::prepare(&recording, &options, Progress::NONE)?;
+    for line in lines(&report, &recording) {
+        say(format_args!("{which}{line}"));
+    }
+    Ok((prepared, Some(report)))
+}
+
+/// As [`asked_for`], with what a fit is warned of; the report is for the JSON.
 pub(crate) fn before_fit(
     recording: Recording,
-    args: &args::PrepareBeforeFit,
+    args: &args::PrepareFirst,
     which: &str,
 ) -> Result<(Recording, Option<Preparation>, Option<RateDependence>)> {
-    let options = steps_of(args);
-    let (recording, report) = match options == PrepareOptions::all(Step::Off) {
-        true => (recording, None),
-        false => {
-            let (prepared, report) = hysteron::prepare(&recording, &options, Progress::NONE)?;
-            for line in lines(&report, &recording) {
-                say(format_args!("{which}{line}"));
-            }
-            (prepared, Some(report))
-        }
-    };
+    let (recording, report) = asked_for(recording, args, which)?;
     if report.is_none() {
         // With the preparation they are refused.
         for doubt in hysteron::doubts(&recording)? {
@@ -93,7 +100,7 @@ pub(crate) fn before_fit(
 }
 
 /// The steps that were asked for before a fit.
-pub(crate) fn steps_of(args: &args::PrepareBeforeFit) -> PrepareOptions {
+pub(crate) fn steps_of(args: &args::PrepareFirst) -> PrepareOptions {
     let defaults = match args.prepare {
         true => PrepareOptions::default(),
         false => PrepareOptions::all(Step::Off),

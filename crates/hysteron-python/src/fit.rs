@@ -13,8 +13,9 @@ use hysteron::{
     Spacing,
 };
 use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PySequence, PyString};
 
 /// Identify a model: the weights and offset that minimise the squared error over the recording.
 ///
@@ -91,11 +92,11 @@ use pyo3::types::{PyDict, PyString};
 /// repeats : Recording or list of Recording, optional
 ///     Other recordings of the same actuator. The weights are not fitted to them. The band is
 ///     widened to what changes between sessions.
-/// hold_out : str, Recording or list of Recording, optional
+/// hold_out : str, Recording or list of them, optional
 ///     What takes no part in the fit, and tests it beside a straight line and interpolation:
 ///     ``'branches:20%'`` (a share up to 33 %, spread over the recording), ``'rows:100-200'``
-///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. `FitSummary.hold_out` has
-///     the errors there.
+///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. A list may hold one such
+///     text beside recordings. `FitSummary.hold_out` has the errors there.
 /// thermal : {None, 'first-order', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. The input has to be proportional to the power, as a duty cycle is: give the square of
@@ -448,12 +449,32 @@ fn stage<'py, T: Copy>(
     }
 }
 
-/// What takes no part in a fit: a part of the recordings in words, or other recordings.
+/// What takes no part in a fit: a part of the recordings in words, other recordings, or a list of
+/// both.
 pub(crate) fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
-    match value.cast::<PyString>() {
-        Ok(text) => text.to_string().parse().raise(),
-        Err(_) => recordings_alone("hold_out", value).map(HoldOut::Recordings),
+    let (mut words, mut recordings) = (Vec::new(), Vec::new());
+    let mut take = |one: &Bound<'_, PyAny>| match one.cast::<PyString>() {
+        Ok(text) => text
+            .to_string()
+            .parse()
+            .raise()
+            .map(|part| words.push(part)),
+        Err(_) => recordings_alone("hold_out", one).map(|all| recordings.extend(all)),
+    };
+    // A text is a sequence, too.
+    let sequence = value.cast::<PySequence>().ok();
+    match sequence.filter(|_| !value.is_instance_of::<PyString>()) {
+        Some(several) => several.try_iter()?.try_for_each(|one| take(&one?))?,
+        None => take(value)?,
     }
+    if words.len() > 1 {
+        let problem =
+            "`hold_out` is two parts of the recordings: one is needed, and any recordings";
+        return Err(PyValueError::new_err(problem));
+    }
+    // An empty list is refused by the fit.
+    let nothing = HoldOut::Recordings(Vec::new());
+    Ok(HoldOut::together(words.pop(), recordings).unwrap_or(nothing))
 }
 
 /// Whether a thermal body is to be identified.

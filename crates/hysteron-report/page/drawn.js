@@ -46,6 +46,7 @@ const between = (upper, lower) => {
   /** @type {(number | null)[]} */
   const ys = [];
   for (let k = 0; k + 1 < upper.x.length; k++) {
+    if (upper.y[k] === null || upper.y[k + 1] === null) continue;
     const [a, b] = upper.x[k] <= upper.x[k + 1] ? [k, k + 1] : [k + 1, k];
     xs.push(upper.x[a], upper.x[b], upper.x[b], upper.x[a], null);
     ys.push(lower.y[a], lower.y[b], upper.y[b], upper.y[a], null);
@@ -69,7 +70,9 @@ class Drawn {
     this.node.setAttribute("role", "img");
     this.node.setAttribute("aria-label", svg.getAttribute("aria-label") ?? "");
     this.node.style.height = `${this.size.height}px`;
-    this.node.style.maxWidth = `${this.size.width}px`;
+    // What is over time takes the width that there is.
+    const isOverTime = figure.plots.every(({ lines }) => lines.every(({ forward }) => forward));
+    if (!isOverTime) this.node.style.maxWidth = `${this.size.width}px`;
     svg.after(this.node);
     frame.classList.add("live");
     this.seen = false;
@@ -101,8 +104,9 @@ class Drawn {
         const first = line.name !== "" && !listed.has(line.name);
         listed.add(line.name);
         const drawn = trace(line, n, first);
-        // Only an area that turns back needs the line before it once more.
-        return line.fill && !line.forward ? between(drawn, trace(lines[l - 1], n, false)) : drawn;
+        // An area that turns back, or has gaps, needs the line before it once more.
+        const isWhole = line.forward && !drawn.y.includes(null);
+        return line.fill && !isWhole ? between(drawn, trace(lines[l - 1], n, false)) : drawn;
       }),
     );
     // Areas and marks have no line of samples: these are for the legend alone.
@@ -155,7 +159,7 @@ class Drawn {
 
   draw() {
     this.stale = false;
-    const narrow = isNarrow(this.node.clientWidth);
+    const narrow = isNarrow(this.node.clientWidth, this.size.width);
     this.node.style.height = `${this.size.height + (narrow ? LEGEND : 0)}px`;
     const config = {
       responsive: true,

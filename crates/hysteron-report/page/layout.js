@@ -15,8 +15,12 @@ const LOOK = {
   minexponent: 5,
 };
 
-/** @param {number} width of a page in pixels */
-const isNarrow = (width) => width < 520;
+/**
+ * Whether a figure has less room than a wide page gives it.
+ * @param {number} room in pixels
+ * @param {number} width of the figure on paper
+ */
+const isNarrow = (room, width) => room < Math.min(520, width - 1);
 
 /** Names come from files: markup in them is text. @param {string} text */
 const plain = (text) =>
@@ -40,7 +44,7 @@ class Frame {
     this.words = words;
     this.size = size;
     this.room = room;
-    this.narrow = isNarrow(room);
+    this.narrow = isNarrow(room, size.width);
     const areas = plots.map(({ area }) => area);
     // What all panels cover.
     this.left = Math.min(...areas.map(({ x }) => x));

@@ -76,7 +76,8 @@ function tools() {
   all.className = "all";
   all.setAttribute("aria-disabled", "true");
   bar.append(all);
-  document.body.append(bar);
+  const first = document.querySelector("figure");
+  (first?.closest("section") ?? first)?.before(bar);
   // A phone that is turned has another layout.
   matchMedia("(max-width: 44rem)").addEventListener("change", everywhere);
   addEventListener("keydown", ({ key }) => key === "Escape" && showAll());

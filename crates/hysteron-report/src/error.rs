@@ -19,6 +19,9 @@ pub enum ReportError {
         /// Values of the series.
         found: usize,
     },
+    /// An evaluation without a recording.
+    #[error("no recording to show: a report needs at least one")]
+    NoRecording,
     /// A comparison without a run.
     #[error("no run to show: a report needs the trace of at least one controller")]
     NoRun,

@@ -52,7 +52,8 @@ pub struct Report<'a> {
 /// What a report shows.
 #[derive(Debug, Clone, Copy)]
 pub enum Shown<'a> {
-    /// A model on a recording. Some figures stand beside those of the chapter on the MKP model.
+    /// A model on a recording, or on several that are shown one after the other. Some figures stand
+    /// beside those of the chapter on the MKP model.
     ///
     /// Figures of the inverse need a model that has one, the close-up a dead band; where they are
     /// missing the page says why. Figures of confidence, cross-validation and load need a model
@@ -61,7 +62,7 @@ pub enum Shown<'a> {
         /// The model that was evaluated.
         model: &'a Model,
         /// What it was evaluated on.
-        recording: &'a Recording,
+        recordings: &'a [Recording],
         /// How it did.
         evaluation: &'a Evaluation,
     },
@@ -96,7 +97,7 @@ impl Report<'_> {
     /// # Errors
     ///
     /// Before anything is written, where the parts do not fit together: [`ReportError::Length`],
-    /// [`ReportError::NoModel`], [`ReportError::NoRun`], [`ReportError::EmptyRun`],
+    /// [`ReportError::NoRecording`], [`ReportError::NoModel`], [`ReportError::NoRun`], [`ReportError::EmptyRun`],
     /// [`ReportError::RunLength`], [`ReportError::Snapshot`] and [`ReportError::Row`].
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
     pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
@@ -176,10 +177,10 @@ impl Report<'_> {
         Ok(match self.shown {
             Shown::Evaluation {
                 model,
-                recording,
+                recordings,
                 evaluation,
             } => Layout::new(
-                &evaluation::View::new(model, recording, evaluation)?,
+                &evaluation::View::new(model, recordings, evaluation)?,
                 is_wanted,
             ),
             Shown::Models { recording, models } => {

@@ -8,6 +8,12 @@ pub(crate) trait Subject: Sized {
     /// All figures, in the order of the page.
     fn sections() -> Vec<Section<Self>>;
 
+    /// The number of samples, and those at which another recording begins: lines through so many
+    /// samples break there.
+    fn begins(&self) -> (usize, &[usize]) {
+        (0, &[])
+    }
+
     /// How page and captions say that the data are simulated, where they are.
     fn simulated(&self) -> Option<Simulated>;
 

@@ -43,7 +43,7 @@ fn open(browser: &mut Chromium, samples: usize, folder: &Path, width: u32) -> Ta
         title: "a play",
         shown: Shown::Evaluation {
             model: &model,
-            recording: &recording,
+            recordings: recording.as_ref(),
             evaluation: &evaluate(&model, &recording).unwrap(),
         },
         made: Made::default(),
@@ -211,6 +211,34 @@ fn paper_has_the_pictures_and_a_phone_the_whole_width() {
     assert_eq!(browser.value(&tab, &both), json!([false, true]));
     browser.media(&tab, "print");
     assert_eq!(browser.value(&tab, &both), json!([true, false]));
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
+}
+
+#[test]
+fn titles_stay_and_a_page_in_the_dark_is_dark() {
+    let Some(mut browser) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let tab = open(&mut browser, 500, folder.path(), 1280);
+    for figure in [TIME, LOOPS, RESIDUALS, "residuals-input"] {
+        // A long one is cut short above the figure.
+        show(&mut browser, &tab, figure);
+        let title = format!(
+            "(() => {{ const figure = document.querySelector('#{figure}');
+             const title = figure.querySelector('figcaption b').textContent.replace(/^Figure \\d+\\. |\\.$/g, '');
+             return [...figure.querySelectorAll('.plot .annotation-text')].some((words) => words.textContent.startsWith(title.slice(0, 24))); }})()"
+        );
+        assert_eq!(browser.value(&tab, &title), json!(true), "{figure}");
+    }
+    // What is over time has the width of the page.
+    let width = format!("document.querySelector('#{TIME} .plot').clientWidth > 1150");
+    assert_eq!(browser.value(&tab, &width), json!(true));
+    let ground = "getComputedStyle(document.body).backgroundColor";
+    assert_eq!(browser.value(&tab, ground), json!("rgb(255, 255, 255)"));
+    browser.scheme(&tab, "dark");
+    assert_ne!(browser.value(&tab, ground), json!("rgb(255, 255, 255)"));
+    // Paper is white.
+    browser.media(&tab, "print");
+    assert_eq!(browser.value(&tab, ground), json!("rgb(255, 255, 255)"));
     assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }
 

@@ -3,14 +3,16 @@
 /** @typedef {{code: number, problem: string, remedy: string | null}} Fault */
 /** @typedef {{input: string|null, output: string|null, time: string|null, load: string|null}} Roles */
 /** @typedef {{name: string, min: number|null, max: number|null, not_numbers: number, picture: ([number, number]|null)[]}} Column */
-/** @typedef {{id: number, name: string, bytes: number, rows: number, columns: Column[], roles: Roles, reasons: string[], doubts: {role: string, candidates: [string, string][]}[], notes: string[], problem: Fault|null, repair: {notes: string[], samples: number}|null, steps: Record<string, string>|null, preparation: any[], mend: boolean, purpose: string, marked: [number, number][], samples: number, begins: number[], branches: number, input: string|null, output: string|null}} File */
+/** @typedef {{id: number, name: string, bytes: number, rows: number, columns: Column[], roles: Roles, reasons: string[], doubts: {role: string, candidates: [string, string][]}[], notes: string[], problem: Fault|null, repair: {notes: string[], samples: number}|null, steps: Record<string, string>|null, preparation: any[], mend: boolean, purpose: string, marked: [number, number][], samples: number, begins: number[], spans: [number, number][], branches: number, input: string|null, output: string|null}} File */
 /** @typedef {{rmse: number, max_abs: number, nrmse_percent: number|null, samples: number}} Errors */
-/** @typedef {{id: number, files: number[], options: Record<string, string>, hold_out: string, levels: number, rmse: number, nrmse_percent: number, max_abs: number, held_out: null|{model: Errors, rivals: (Errors & {name: string})[]}, verdict: [string, string][], advice: string[], inverse: boolean, timed: boolean, load: [number, number]|null, input: string, output: string, confidence: boolean}} Fit */
+/** @typedef {{id: number, files: number[], options: Record<string, string>, hold_out: string, levels: number, rmse: number, nrmse_percent: number, max_abs: number, held_out: null|{model: Errors, rivals: (Errors & {name: string})[]}, inverse_errors: Errors|null, outliers: number, verdict: [string, string][], advice: string[], inverse: boolean, timed: boolean, load: [number, number]|null, input: string, output: string, confidence: boolean}} Fit */
 /** @typedef {{id: number, stage: string, share: number|null}} JobView */
 /** @typedef {{name: string, default: string, range: string, purpose: string}} Option */
 /** @typedef {{files: File[], fits: Fit[], jobs: JobView[], best: number|null, best_by: string, options: Option[], memory: [number, number]}} Overview */
 /** @typedef {{fit: number|null, raw: boolean, x: (number|null)[], y: (number|null)[]}} Line */
-/** @typedef {{picture: string, x: string, y: string, lines: Line[], samples: number, span: [number, number]|null, marked: [number, number][]}} Curves */
+/** @typedef {[(number|null)[], (number|null)[]]} Points */
+/** @typedef {{low: number, high: number, beyond: boolean}} Ends */
+/** @typedef {{picture: string, x: string, y: string, lines: Line[], ends: [Ends|null, Ends|null], samples: number, span: [number, number]|null, begins: number[], marked: [number, number][], held: [number, number][], band: [Points, Points]|null, outliers: [number, number][]}} Curves */
 
 const way = document.querySelector('meta[name="hysteron-session"]') ? await import("./local.js") : await import("./http.js");
 

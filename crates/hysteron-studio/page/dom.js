@@ -63,3 +63,12 @@ export function fill(node, ...children) {
   node.replaceChildren(...children.filter((child) => child !== null));
   if (focus) /** @type {HTMLElement | null} */ (node.querySelector(`[data-key="${CSS.escape(focus)}"]`))?.focus();
 }
+
+/**
+ * The unit in the name of a column, with a space before it; empty without one.
+ * @param {string | null | undefined} column
+ */
+export const unit = (column) => {
+  const found = /\[([^\]]+)\]$/.exec(column ?? "");
+  return found ? ` ${found[1]}` : "";
+};

@@ -1,9 +1,10 @@
 // A model driven by hand: move the input, or pull the output and let the inverse answer.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown } from "./dom.js";
+import { by, el, fill, shown, unit } from "./dom.js";
 import { draw, ink, stroke } from "./plot.js";
 import * as hand from "./hand.js";
+import { isOpen } from "./task.js";
 
 const STATUS = /** @type {Record<string, string>} */ ({ ok: "reached", low: "below every output of the model", high: "above every output of the model", passed: "inside a jump of the model", limited: "not in this time step: the drive is at its end" });
 
@@ -12,8 +13,8 @@ const now = { fit: null, chosen: false, loop: null, view: null, policy: "hold", 
 
 /** @param {import("./api.js").Overview} overview */
 export async function show(overview) {
-  by("drive").hidden = overview.fits.length === 0;
   if (overview.fits.length === 0) return void (now.fit = null);
+  if (!isOpen("drive")) return;
   const gone = !overview.fits.some((fit) => fit.id === now.fit);
   if (gone || (!now.chosen && now.fit !== overview.best)) {
     now.chosen = false;
@@ -40,34 +41,32 @@ async function build(overview) {
   const fit = overview.fits.find((fit) => fit.id === now.fit);
   if (!fit || !now.view) return;
   const slider = (/** @type {"input"|"output"} */ what, /** @type {string} */ text, /** @type {[number, number]} */ [low, high]) => {
-    const more = what === "output" ? 0.05 * (high - low) : 0;
-    const send = (/** @type {any} */ event) => move({ [what]: Number(event.target.value) });
+    const disabled = what === "output" && !fit.inverse;
+    const send = (/** @type {any} */ event) => event.target.value !== "" && move({ [what]: Number(event.target.value) });
     return el("div", { class: "field" },
       el("label", { for: `drive-${what}` }, el("strong", {}, text)),
-      el("input", { id: `drive-${what}`, type: "range", min: low - more, max: high + more, step: "any", value: String(now.view[what]), disabled: what === "output" && !fit.inverse, oninput: send }),
-      el("span", { class: "value", id: `value-${what}` }));
+      el("div", { class: "slider" },
+        el("input", { id: `drive-${what}`, type: "range", min: low, max: high, step: "any", value: String(now.view[what]), disabled, oninput: send }),
+        el("input", { id: `drive-${what}-number`, type: "number", step: "any", disabled, "aria-label": `${text}, as a number`, onchange: send })),
+      el("small", { id: `value-${what}` }));
   };
   const number = (/** @type {"dt"|"load"} */ what, /** @type {string} */ text) =>
     now.view[what] === null ? null : el("label", { class: "field" }, el("span", {}, text), el("input", { type: "number", step: "any", id: `drive-${what}`, value: String(now.view[what]) }));
   fill(
-    by("drive-body"),
-    el("div", { class: "drive" },
-      el("div", { class: "card" },
-        el("div", { class: "row" },
-          el("label", {}, "Model ", el("select", { "data-key": "drive-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), begin(overview)) }, ...overview.fits.map((fit, n) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, `fit ${n + 1}`)))),
-          el("button", { "data-key": "drive-again", onclick: () => begin(overview) }, "Start again")),
-        slider("input", `Input: ${fit.input}`, now.view.inputs),
-        slider("output", `Output wanted: ${fit.output}`, now.view.outputs),
-        el("p", { id: "drive-status", role: "status" }),
-        fit.inverse
-          ? el("label", { class: "field" }, el("span", {}, "When the output reverses"), el("select", { "data-key": "policy", onchange: (/** @type {any} */ e) => (now.policy = e.target.value) },
-              el("option", { value: "hold", selected: now.policy === "hold" }, "hold: the input stays until the output has to move"),
-              el("option", { value: "anticipate", selected: now.policy === "anticipate" }, "anticipate: cross the dead band at once")))
-          : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
-        hand.form(fit.inverse, (what) => move(what), () => now.view),
-        number("dt", "Time step [s]"), number("load", "Load")),
-      el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far, over what was measured (grey). The bar is the dead band: between its ends the output stands still. Drag in the picture."),
-        el("div", { id: "plot-moves", class: "plot low", hidden: true }), el("figcaption", { id: "moves-caption", hidden: true }, "The input of both policies for the same outputs, since the input was moved by hand."))),
+    by("drive"),
+    el("div", { class: "row" },
+      el("label", {}, "Model ", el("select", { "data-key": "drive-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), begin(overview)) }, ...overview.fits.map((fit, n) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, `fit ${n + 1}`)))),
+      el("button", { "data-key": "drive-again", onclick: () => begin(overview) }, "Start again")),
+    slider("input", `Input: ${fit.input}`, now.view.inputs),
+    slider("output", `Output wanted: ${fit.output}`, now.view.outputs),
+    el("p", { id: "drive-status", role: "status" }),
+    fit.inverse
+      ? el("label", { class: "field" }, el("span", {}, "When the output reverses"), el("select", { "data-key": "policy", onchange: (/** @type {any} */ e) => (now.policy = e.target.value) },
+          el("option", { value: "hold", selected: now.policy === "hold" }, "hold: the input stays until the output has to move"),
+          el("option", { value: "anticipate", selected: now.policy === "anticipate" }, "anticipate: cross the dead band at once")))
+      : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
+    hand.form(fit.inverse, (what) => move(what), () => now.view),
+    number("dt", "Time step [s]"), number("load", "Load"),
   );
   await answer(fit);
 }
@@ -101,14 +100,17 @@ async function answer(fit) {
   known = fit ?? known;
   const { input, output, wanted, status, rival, moves, dead_band: band, trail, inputs, outputs } = now.view;
   const active = document.activeElement?.id;
-  if (active !== "drive-input") by("drive-input").value = String(input);
-  if (active !== "drive-output") by("drive-output").value = String(output);
-  by("value-input").textContent = shown(input);
-  by("value-output").textContent = `reached: ${shown(output)}`;
+  for (const [id, value] of [["drive-input", input], ["drive-output", output]]) {
+    if (active !== id) by(id).value = String(value);
+    if (active !== `${id}-number`) by(`${id}-number`).value = shown(value);
+  }
+  const [of, to] = [unit(known?.input), unit(known?.output)];
+  by("value-input").textContent = `at ${shown(input)}${of}`;
+  by("value-output").textContent = `reached: ${shown(output)}${to}`;
   const parts = [];
-  if (wanted !== null) parts.push(`Wanted ${shown(wanted)}: ${STATUS[status] ?? status}.`);
-  if (rival) parts.push(`Input with “${now.policy}”: ${shown(input)}, with “${rival.policy}”: ${shown(rival.input)}.`);
-  if (band) parts.push(`Dead band: ${shown(band[0])} to ${shown(band[1])}.`);
+  if (wanted !== null) parts.push(`Wanted ${shown(wanted)}${to}: ${STATUS[status] ?? status}.`);
+  if (rival) parts.push(`Input with “${now.policy}”: ${shown(input)}${of}, with “${rival.policy}”: ${shown(rival.input)}${of}.`);
+  if (band) parts.push(`Dead band: ${shown(band[0])} to ${shown(band[1])}${of}.`);
   by("drive-status").textContent = parts.join(" ") || "Move a slider: with the mouse, or with the arrow keys.";
   const traces = [
     ...(now.loop ? [{ x: now.loop.x, y: now.loop.y, mode: "lines", name: "measured", line: { ...stroke(null), width: 1 }, opacity: 0.45, showlegend: false, hoverinfo: "skip" }] : []),
@@ -120,7 +122,7 @@ async function answer(fit) {
   const wide = (/** @type {[number, number]} */ [low, high]) => { const more = 0.07 * (high - low); return [low - more, high + more]; };
   await draw(by("plot-drive"), traces, { x: known?.input ?? "input", y: known?.output ?? "output", xaxis: { range: wide(inputs) }, yaxis: { range: wide(outputs) }, dragmode: false });
   hand.drags(by("plot-drive"), Boolean(known?.inverse), (what) => move(what));
-  by("plot-moves").hidden = by("moves-caption").hidden = moves.length === 0;
+  by("figure-moves").hidden = by("plot-moves").hidden = moves.length === 0;
   const line = (/** @type {number} */ place, /** @type {string} */ name) => ({ x: moves.map((/** @type {number[]} */ _, /** @type {number} */ n) => n + 1), y: moves.map((/** @type {number[]} */ move) => move[place]), mode: "lines", name, line: stroke(place - 1) });
   if (moves.length > 0) await draw(by("plot-moves"), [line(1, "hold"), line(2, "anticipate")], { x: "move", y: known?.input ?? "input" });
 }

@@ -1,7 +1,8 @@
 // Fits: options with their meaning, work under way, the list.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown } from "./dom.js";
+import { by, el, fill, shown, unit } from "./dom.js";
+import * as look from "./look.js";
 import { colour } from "./plot.js";
 
 const FIRST = ["levels", "smooth", "spacing", "start"];
@@ -31,15 +32,16 @@ function build(options) {
     { class: "field" },
     el("span", {}, "hold-out"),
     el("select", { name: "hold_out" }, el("option", { value: "usual" }, "usual"), el("option", { value: "branches:33%" }, "branches:33%"), el("option", { value: "nothing" }, "nothing")),
-    el("small", {}, "What takes no part in the fit and tests it. Usual: the files for validation, or the rows marked, or a fifth of the branches."),
+    el("small", {}, "What takes no part in the fit and tests it. Usual: what “Split” says."),
   );
   const form = by("options");
   form.addEventListener("submit", (/** @type {Event} */ event) => (event.preventDefault(), begin(form)));
+  by("fit-now").addEventListener("click", () => begin(form));
   fill(
     form,
+    el("div", { class: "row" }, el("button", { class: "first", type: "submit", id: "begin" }, "Fit"), el("span", { class: "quiet" }, "The defaults suit most recordings.")),
     el("div", { class: "fields" }, ...options.filter(isFirst).map(field), held),
     el("details", {}, el("summary", {}, "All other options"), el("div", { class: "fields" }, ...options.filter((option) => !isFirst(option)).map(field))),
-    el("div", { class: "row" }, el("button", { class: "first", type: "submit", id: "begin" }, "Fit"), el("span", { class: "quiet" }, "The defaults suit most recordings.")),
   );
 }
 
@@ -83,6 +85,12 @@ export function working(jobs) {
   }));
 }
 
+/** Verdicts that were opened or closed, by fit. @type {Map<number, boolean>} */
+const told = new Map();
+
+/** The verdict has these as numbers. */
+const NUMBERS = new Set(["verdict", "error", "inverse"]);
+
 /**
  * Shows the list of fits.
  * @param {import("./api.js").Overview} overview
@@ -91,37 +99,61 @@ export function working(jobs) {
  * @param {(overview: any) => void} changed
  */
 export function show(overview, drawn, draw, changed) {
-  by("fit").hidden = overview.files.length === 0;
+  by("found").hidden = overview.files.length === 0;
   if (!by("options").firstChild) build(overview.options);
-  by("begin").disabled = !overview.files.some((file) => file.purpose === "fit" && !file.problem);
-  if (overview.fits.length === 0) return fill(by("fits"));
-  const error = (/** @type {number | null | undefined} */ percent) => (percent === null || percent === undefined ? "–" : `${shown(percent)} %`);
-  const wins = (/** @type {import("./api.js").Fit} */ fit) => fit.held_out?.rivals.some((rival) => rival.rmse < (fit.held_out?.model.rmse ?? 0));
-  const row = (/** @type {import("./api.js").Fit} */ fit, /** @type {number} */ place) => {
-    const options = Object.entries(fit.options).map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";
-    const rival = fit.held_out?.rivals.reduce((a, b) => (a.rmse < b.rmse ? a : b));
-    const grade = fit.verdict[0]?.[1].split(":")[0];
-    const verdict = grade && el("details", {}, el("summary", { class: `grade ${grade.split(" ")[0]}` }, grade), el("dl", { class: "verdict" }, ...fit.verdict.flatMap(([heading, text]) => [el("dt", {}, heading), el("dd", {}, text)])));
-    const toggle = (/** @type {any} */ event) => (event.target.checked ? drawn.add(fit.id) : drawn.delete(fit.id), draw());
-    return el(
-      "tr",
-      { class: fit.id === overview.best ? "best" : null },
-      el("td", {}, el("label", { style: "white-space:nowrap" }, el("input", { type: "checkbox", "data-key": `draw-${fit.id}`, checked: drawn.has(fit.id), onchange: toggle, "aria-label": `Draw fit ${place + 1}` }), " ", el("span", { class: "swatch", style: `border-color:${colour(place)}` }), `Fit ${place + 1}`), fit.id === overview.best && el("div", {}, el("span", { class: "badge", title: `By ${overview.best_by}` }, "best"))),
-      el("td", {}, verdict || "–"),
-      el("td", { class: "number" }, error(fit.held_out?.model.nrmse_percent), rival && el("div", { class: wins(fit) ? "worse" : "quiet" }, `${wins(fit) ? "worse than " : ""}${rival.name} ${error(rival.nrmse_percent)}`)),
-      el("td", { class: "number" }, error(fit.nrmse_percent)),
-      el("td", {}, options, el("div", { class: "quiet" }, `${fit.levels} levels`)),
-      el("td", {}, fit.hold_out || "nothing"),
-      el("td", {}, fit.advice.length === 0 ? "–" : el("details", {}, el("summary", {}, `${fit.advice.length} to know`), el("ul", { class: "notes" }, ...fit.advice.map((text) => el("li", {}, text))))),
-      el("td", {}, el("button", { "aria-label": `Remove fit ${place + 1}`, onclick: () => ask("forget", { fit: fit.id }).then(changed, () => {}) }, "Remove")),
-    );
-  };
+  const nothing = !overview.files.some((file) => file.purpose === "fit" && !file.problem);
+  for (const id of ["begin", "fit-now"]) by(id).disabled = nothing;
+  by("fit-now").textContent = overview.fits.length > 0 ? "Fit again" : "Fit";
+  if (overview.fits.length === 0) return fill(by("fits"), nothing ? null : el("p", { class: "quiet" }, "None yet. The defaults suit most recordings; “Fit” above has the options."));
+  const last = overview.fits.length - 1;
   fill(
     by("fits"),
-    el("div", { class: "card scroll", style: "margin-top:1rem" },
-      el("table", {},
-        el("thead", {}, el("tr", {}, ...["Fit", "Verdict", "Error, held out", "Error, fitted", "Options", "Held out", "Advice", ""].map((text, n) => el("th", { scope: "col", class: n === 2 || n === 3 ? "number" : null }, text)))),
-        el("tbody", {}, ...overview.fits.map(row)))),
-    el("p", { class: "quiet" }, `Errors are RMSE in percent of the output's range. Below the error on what was held out stands that of the best simple predictor. Best is ${overview.best_by}.`),
+    ...overview.fits.map((fit, place) => card(overview, fit, place, { isOpen: told.get(fit.id) ?? (place === last || fit.id === overview.best), drawn, draw, changed })).reverse(),
+    el("p", { class: "quiet" }, `Errors are RMSE, in percent of the range. Best is ${overview.best_by}.`),
   );
+}
+
+/**
+ * @param {import("./api.js").Overview} overview
+ * @param {import("./api.js").Fit} fit
+ * @param {number} place in the list
+ * @param {{isOpen: boolean, drawn: Set<number>, draw: () => void, changed: (overview: any) => void}} how
+ */
+function card(overview, fit, place, { isOpen, drawn, draw, changed }) {
+  const best = fit.id === overview.best;
+  const rival = fit.held_out?.rivals.reduce((a, b) => (a.rmse < b.rmse ? a : b));
+  const wins = rival && rival.rmse < (fit.held_out?.model.rmse ?? 0);
+  const options = Object.entries(fit.options).filter(([name]) => name !== "levels").map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";
+  const [grade, meaning] = (fit.verdict[0]?.[1] ?? "").split(": ");
+  const toggle = (/** @type {any} */ event) => (event.target.checked ? drawn.add(fit.id) : drawn.delete(fit.id), draw());
+  const error = (/** @type {string} */ name, /** @type {{rmse: number, nrmse_percent: number|null} | null | undefined} */ errors, /** @type {string} */ of, kind = "") =>
+    errors && el("tr", { class: kind }, el("th", { scope: "row" }, name), el("td", {}, errors.nrmse_percent === null ? "–" : `${shown(errors.nrmse_percent)} %`), el("td", {}, `${shown(errors.rmse)}${unit(of)}`));
+  return el(
+    "article",
+    { class: best ? "card best" : "card", "aria-label": `Fit ${place + 1}` },
+    el("div", { class: "head" },
+      el("label", {}, el("input", { type: "checkbox", "data-key": `draw-${fit.id}`, checked: drawn.has(fit.id), onchange: toggle, "aria-label": `Draw fit ${place + 1}` }), el("span", { class: "swatch", style: `border-color:${colour(place)}` }), el("strong", {}, `Fit ${place + 1}`)),
+      best && el("span", { class: "badge", title: `By ${overview.best_by}` }, "best"),
+      grade && el("span", { class: `grade ${grade.split(" ")[0]}` }, grade),
+      el("button", { class: "plain", "aria-label": `Remove fit ${place + 1}`, title: "Remove", onclick: () => ask("forget", { fit: fit.id }).then(changed, () => {}) }, "✕")),
+    meaning && el("p", {}, `${meaning[0].toUpperCase()}${meaning.slice(1)}.`),
+    el("table", { class: "errors" }, el("tbody", {},
+      error("held out", fit.held_out?.model, fit.output),
+      rival && error(wins ? `${rival.name} is better` : rival.name, rival, fit.output, wins ? "worse" : "quiet"),
+      error("fitted", fit, fit.output),
+      error("inverse, of the input", fit.inverse_errors, fit.input))),
+    !fit.inverse && el("p", { class: "warn" }, "It has weights below zero, and so no inverse."),
+    ...fit.advice.map((text) => el("p", { class: "warn" }, text)),
+    el("details", { open: isOpen, ontoggle: (/** @type {any} */ e) => told.set(fit.id, e.target.open) },
+      el("summary", {}, "Why, and what next"),
+      el("dl", { class: "verdict" }, ...fit.verdict.filter(([heading]) => !NUMBERS.has(heading)).flatMap(([heading, text]) => [el("dt", {}, heading), el("dd", {}, text)])),
+      el("p", { class: "quiet" }, `${fit.levels} levels, ${options}. Held out: ${fit.hold_out.replace("files", "other files") || "nothing"}.`)),
+    el("button", { class: "chip", "data-key": `worst-${fit.id}`, onclick: () => worst(fit) }, "Show the worst sample"),
+  );
+}
+
+/** Points at the sample with the largest residual. @param {import("./api.js").Fit} fit */
+async function worst(fit) {
+  const found = await ask("worst", { fit: fit.id }).catch(() => null);
+  if (found) look.point(found.file, found.sample.time);
 }

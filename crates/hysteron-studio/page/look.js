@@ -2,7 +2,8 @@
 
 import { ask } from "./api.js";
 import { by, el, fill } from "./dom.js";
-import { draw, on, save, stroke } from "./plot.js";
+import * as layers from "./layers.js";
+import { archive, draw, on, stroke } from "./plot.js";
 import * as plane from "./plane.js";
 import * as play from "./play.js";
 
@@ -16,17 +17,59 @@ const OVER_TIME = new Set(["output", "input", "residuals"]);
 /** @type {Area} */
 const ALL = { input: null, output: null };
 
-/** What is shown. @type {{file: number|null, window: [number, number]|null, area: Area, raw: boolean, span: [number, number]|null, marking: boolean, overview: any, drawn: Set<number>, whole: [number, number]|null, samples: number, asked: number, changed?: any}} */
-const now = { file: null, window: null, area: ALL, raw: true, span: null, marking: false, overview: null, drawn: new Set(), whole: null, samples: 0, asked: 0 };
+/** What is shown; `beyond` are the pictures with samples off their scale. @type {{file: number|null, window: [number, number]|null, area: Area, span: [number, number]|null, marking: boolean, overview: any, drawn: Set<number>, whole: [number, number]|null, samples: number, asked: number, everything: boolean, beyond: Set<string>, changed?: any}} */
+const now = { file: null, window: null, area: ALL, span: null, marking: false, overview: null, drawn: new Set(), whole: null, samples: 0, asked: 0, everything: false, beyond: new Set() };
+
+/** The fit whose band, outliers and held-out samples are drawn. */
+const leading = () => (now.drawn.has(now.overview.best) ? now.overview.best : [...now.drawn].at(-1) ?? null);
 
 /** @param {string} band */
 const view = (band) => {
   const node = by(/** @type {any} */ (BANDS.find(([name]) => name === band))[1]);
-  return { file: now.file, fits: [...now.drawn], picture: band, window: now.window, area: now.area, raw: now.raw, pixels: [Math.max(100, node.clientWidth), Math.max(100, node.clientHeight)] };
+  return { file: now.file, fits: [...now.drawn], picture: band, window: now.window, area: now.area, raw: layers.has("raw"), of: leading(), band: layers.has("band"), pixels: [Math.max(100, node.clientWidth), Math.max(100, node.clientHeight)] };
 };
 
 /** The pictures that can be taken home as numbers. */
 export const shownViews = () => ({ views: view, bands: BANDS });
+
+/** @param {number} file */
+export const isShown = (file) => now.file === file;
+
+export const isMarking = () => now.marking;
+
+/** Begins or ends a mark by a drag over the output. */
+export function marks() {
+  now.marking = !now.marking;
+  now.changed?.(now.overview);
+}
+
+/**
+ * Shows a file, or a part of its time.
+ * @param {number} file
+ * @param {[number, number] | null} window
+ */
+export function choose(file, window = null) {
+  Object.assign(now, { file, window, area: ALL });
+  if (!window) now.whole = null;
+  // The tasks are about the file that is shown.
+  now.changed?.(now.overview);
+}
+
+/**
+ * Points at a sample of a file, and shows it.
+ * @param {number} file
+ * @param {number} time
+ */
+export async function point(file, time) {
+  const isInside = now.window === null || (now.window[0] <= time && time <= now.window[1]);
+  if (file !== now.file || !isInside) {
+    Object.assign(now, { file, window: null, area: ALL, whole: null });
+    await now.changed?.(now.overview);
+  }
+  await play.to(time);
+}
+
+const again = () => show(now.overview, now.drawn, now.changed);
 
 /**
  * @param {import("./api.js").Overview} overview
@@ -36,20 +79,15 @@ export const shownViews = () => ({ views: view, bands: BANDS });
 export function show(overview, drawn, changed) {
   const files = overview.files.filter((file) => !file.problem);
   by("look").hidden = files.length === 0;
-  Object.assign(now, { overview, drawn: new Set([...drawn].filter((id) => overview.fits.some((fit) => fit.id === id))) });
-  if (files.length === 0) return;
+  Object.assign(now, { overview, changed, drawn: new Set([...drawn].filter((id) => overview.fits.some((fit) => fit.id === id))) });
+  if (files.length === 0) return void (now.file = null);
   if (!files.some((file) => file.id === now.file)) Object.assign(now, { file: files[0].id, window: null, area: ALL, whole: null });
-  tools(files, changed);
+  tools();
   for (const node of document.querySelectorAll(".fitted")) /** @type {HTMLElement} */ (node).hidden = now.drawn.size === 0;
   return redraw();
 }
 
-/**
- * @param {import("./api.js").File[]} files
- * @param {(overview: any) => void} changed
- */
-function tools(files, changed) {
-  const again = () => show(now.overview, now.drawn, changed);
+function tools() {
   const zoom = (/** @type {number} */ share, /** @type {number} */ move) => {
     const [a, b] = now.window ?? now.span ?? now.whole ?? [0, 1];
     const middle = (a + b) / 2 + move * (b - a);
@@ -57,41 +95,43 @@ function tools(files, changed) {
     now.window = share > 1 && now.whole && 2 * half >= now.whole[1] - now.whole[0] ? null : [middle - half, middle + half];
     redraw();
   };
-  const file = files.find((file) => file.id === now.file);
+  const button = (/** @type {string} */ key, /** @type {string} */ sign, /** @type {string} */ name, /** @type {() => void} */ onclick) => el("button", { "data-key": key, "aria-label": name, title: name, onclick }, sign);
+  const file = now.overview.files.find((/** @type {any} */ file) => file.id === now.file);
+  const fit = now.overview.fits.find((/** @type {any} */ fit) => fit.id === leading());
   fill(
     by("look-tools"),
-    el("label", {}, "File ", el("select", { "data-key": "look-file", onchange: (/** @type {any} */ e) => (Object.assign(now, { file: Number(e.target.value), window: null, area: ALL, whole: null }), again()) }, ...files.map((file) => el("option", { value: String(file.id), selected: file.id === now.file }, file.name)))),
-    el("button", { "data-key": "zoom-in", "aria-label": "Zoom in", onclick: () => zoom(0.5, 0) }, "+"),
-    el("button", { "data-key": "zoom-out", "aria-label": "Zoom out", onclick: () => zoom(2, 0) }, "−"),
-    el("button", { "data-key": "earlier", "aria-label": "Earlier", onclick: () => zoom(1, -0.25) }, "◀"),
-    el("button", { "data-key": "later", "aria-label": "Later", onclick: () => zoom(1, 0.25) }, "▶"),
-    el("button", { "data-key": "all", onclick: () => (Object.assign(now, { window: null, area: ALL }), redraw()) }, "Show all"),
-    el("button", { "data-key": "mark", "aria-pressed": String(now.marking), onclick: () => ((now.marking = !now.marking), again()) }, now.marking ? "Drag over the output to mark…" : file?.marked.length ? "Mark another span for validation" : "Mark a span for validation"),
-    file?.steps ? el("button", { "data-key": "as-read", "aria-pressed": String(now.raw), onclick: () => ((now.raw = !now.raw), again()) }, "As read, too") : null,
-    file && now.marking
-      ? el("form", { class: "row", onsubmit: (/** @type {any} */ e) => {
-          e.preventDefault();
-          const form = new FormData(e.target);
-          now.marking = false;
-          ask("mark", { file: now.file, rows: [Number(form.get("first")), Number(form.get("last"))] }).then(changed, () => again());
-        } },
-        el("label", {}, "or rows ", el("input", { name: "first", type: "number", min: 1, max: file.samples, required: true, style: "width:7rem" })),
-        el("label", {}, "to ", el("input", { name: "last", type: "number", min: 1, max: file.samples, required: true, style: "width:7rem" })),
-        el("button", {}, "Mark"))
-      : null,
+    el("div", { class: "group", role: "group", "aria-label": "Part of the time" },
+      button("zoom-in", "+", "Zoom in", () => zoom(0.5, 0)),
+      button("zoom-out", "−", "Zoom out", () => zoom(2, 0)),
+      button("earlier", "◀", "Earlier", () => zoom(1, -0.25)),
+      button("later", "▶", "Later", () => zoom(1, 0.25)),
+      el("button", { "data-key": "all", onclick: () => (Object.assign(now, { window: null, area: ALL }), redraw()) }, "All")),
+    el("div", { class: "row", role: "group", "aria-label": "What is drawn" },
+      ...layers.buttons(file, fit, again),
+      now.beyond.size > 0 || now.everything ? el("button", { class: "chip", "data-key": "everything", "aria-pressed": String(now.everything), title: "A few samples lie far from all others", onclick: () => ((now.everything = !now.everything), again()) }, "Off the scale") : null),
+    now.marking ? el("strong", { role: "status" }, "Drag over the output to hold a span out.") : null,
   );
-  now.changed = changed;
 }
 
 /** Fetches what the pixels can show, and draws it. */
 async function redraw() {
   const mine = ++now.asked;
+  const before = now.beyond.size > 0;
   const bands = BANDS.filter(([band]) => now.drawn.size > 0 || ["output", "input", "loop"].includes(band));
+  for (const band of now.beyond) if (!bands.some(([name]) => name === band)) now.beyond.delete(band);
   await Promise.all(bands.map((band) => picture(band, mine)));
   if (mine !== now.asked) return;
+  if (before !== now.beyond.size > 0) tools();
   play.show(now.overview, now.drawn, now.file, now.window ?? now.span ?? [0, 1], now.samples);
   if (mine === now.asked && now.drawn.size > 0) await plane.show(now.overview, now.drawn);
 }
+
+/** The ends with some room; null for all that there is. @param {import("./api.js").Ends | null} ends @returns {[number, number] | null} */
+const scale = (ends) => {
+  if (!ends || now.everything) return null;
+  const room = 0.05 * (ends.high - ends.low || Math.abs(ends.high) || 1);
+  return [ends.low - room, ends.high + room];
+};
 
 /**
  * @param {string[]} which its name and its place
@@ -101,8 +141,8 @@ async function picture([band, id], mine) {
   const node = by(/** @type {any} */ (id));
   const curves = /** @type {import("./api.js").Curves} */ (await ask("curves", view(band)).catch(() => null));
   if (!curves || mine !== now.asked) return;
-  const place = (/** @type {number} */ id) => now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id);
-  const traces = curves.lines.map(({ fit, raw, x, y }) => ({
+  const place = (/** @type {number|null} */ id) => now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id);
+  const lines = curves.lines.map(({ fit, raw, x, y }) => ({
     x, y,
     type: band === "histogram" ? "bar" : "scatter",
     mode: band === "residuals_over_input" ? "markers" : "lines",
@@ -118,18 +158,22 @@ async function picture([band, id], mine) {
     Object.assign(now, { span: curves.span, samples: curves.samples });
     if (!now.window && !isPart) now.whole = curves.span;
   }
-  const range = overTime ? now.window ?? curves.span : band === "histogram" ? null : now.area.input;
-  const height = band === "loop" ? now.area.output : null;
-  const shapes = overTime
-    ? curves.marked.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "rgba(230,159,0,.22)", line: { width: 0 }, label: { text: band === "output" ? "validation" : "", textposition: "top left" } }))
-    : [];
-  await draw(node, traces, {
-    x: curves.x, y: curves.y, shapes: [...shapes, ...play.shapes(id)], barmode: "overlay", bargap: 0,
+  // A few samples far from all others do not set the scale.
+  const isLoop = band === "loop";
+  const [across, up] = curves.ends;
+  const range = overTime ? now.window ?? curves.span : now.area.input ?? scale(across);
+  const height = isLoop ? now.area.output ?? scale(up) : scale(up);
+  const [below, above] = band === "histogram" ? [[], []] : layers.traces(curves, place(leading()), height);
+  if (across?.beyond || up?.beyond) now.beyond.add(band);
+  else now.beyond.delete(band);
+  await draw(node, [...below, ...lines, ...above], {
+    x: curves.x, y: curves.y, shapes: [...(overTime ? layers.shapes(curves, band === "output") : []), ...play.shapes(id)], barmode: "overlay", bargap: 0,
     xaxis: range ? { range: [...range] } : {},
-    yaxis: height ? { range: [...height] } : {},
+    yaxis: { ...(height ? { range: [...height] } : {}), fixedrange: !isLoop },
     dragmode: now.marking && band === "output" ? "select" : band === "histogram" ? false : "zoom",
     selectdirection: "h",
     meta: { samples: curves.samples },
+    aligned: band !== "loop",
   });
   on(node, "plotly_relayout", (event) => {
     if (event.shapes || band === "histogram") return;
@@ -144,8 +188,13 @@ async function picture([band, id], mine) {
     else return;
     redraw();
   });
-  if (!overTime) return;
-  on(node, "plotly_click", (event) => (plane.states(), play.to(Number(event.points[0].x))));
+  on(node, "plotly_click", async (event) => {
+    const { x, y } = event.points[0];
+    plane.states();
+    if (overTime) return play.to(Number(x));
+    const sample = await ask("nearest", { view: view(band), at: [Number(x), Number(y)] }).catch(() => null);
+    if (sample) play.to(sample.time);
+  });
   if (band === "output") on(node, "plotly_selected", (event) => {
     if (!event?.range || !now.marking) return;
     now.marking = false;
@@ -153,5 +202,5 @@ async function picture([band, id], mine) {
   });
 }
 
-/** @param {"svg" | "png"} format */
-export const picturesAs = (format) => Promise.all([...document.querySelectorAll("#look figure:not([hidden]) .js-plotly-plot")].map((node) => save(/** @type {HTMLElement} */ (node), format)));
+/** The pictures that are shown, as files. @returns {Promise<{name: string, bytes: Uint8Array}[]>} */
+export const pictures = () => archive(/** @type {HTMLElement[]} */ ([...document.querySelectorAll("#look figure:not([hidden]) .js-plotly-plot")]));

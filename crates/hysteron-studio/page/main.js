@@ -3,11 +3,14 @@
 import { about, anew, ask, listen, reload, whenRefused } from "./api.js";
 import { by, el, fill } from "./dom.js";
 import * as opening from "./open.js";
+import * as preparing from "./prepare.js";
+import * as splitting from "./split.js";
 import * as fitting from "./fit.js";
 import * as looking from "./look.js";
 import * as driving from "./drive.js";
 import * as designing from "./design.js";
 import * as home from "./home.js";
+import * as task from "./task.js";
 import * as theme from "./theme.js";
 
 /** The fits that are drawn. @type {Set<number>} */
@@ -34,18 +37,24 @@ async function show(found) {
     if (!known.has(id)) drawn.add(id);
     known.add(id);
   }
+  document.body.classList.toggle("empty", found.files.length === 0);
+  task.offer(found.files.some((file) => !file.problem), found.fits.length > 0);
+  const drawing = looking.show(found, drawn, show);
   opening.show(found, show);
   fitting.show(found, drawn, draw, show);
-  for (const link of document.querySelectorAll("nav a")) {
-    const section = by(String(link.getAttribute("href")).slice(1));
-    link.setAttribute("aria-disabled", String(section.hidden));
-  }
-  await looking.show(found, drawn, show);
-  await driving.show(found);
-  await designing.show(found);
-  await home.show(found);
-  for (const link of document.querySelectorAll("nav a")) link.setAttribute("aria-disabled", String(by(String(link.getAttribute("href")).slice(1)).hidden));
+  await drawing;
+  await tasks();
   document.body.dataset.shown = String(found.fits.length);
+}
+
+/** Shows the tasks, of which one may be open. */
+async function tasks() {
+  if (!overview) return;
+  preparing.show(overview, show);
+  splitting.show(overview, show);
+  await driving.show(overview);
+  await designing.show(overview);
+  await home.show(overview);
 }
 
 const draw = () => overview && looking.show(overview, drawn, show);
@@ -61,6 +70,7 @@ function say({ problem, remedy }) {
 
 whenRefused(say);
 
+task.start(() => void tasks());
 theme.start(() => overview && show(overview));
 by("reload").addEventListener("click", () => reload().then(show, () => {}));
 by("anew").addEventListener("click", () => confirm("Forget files, fits and marks?") && anew?.());

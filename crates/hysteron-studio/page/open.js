@@ -2,10 +2,13 @@
 
 import { ask, open } from "./api.js";
 import { by, el, fill, shown } from "./dom.js";
-import * as prepare from "./prepare.js";
+import * as look from "./look.js";
+import * as task from "./task.js";
 
 const ROLES = [["", "not used"], ["input", "input"], ["output", "output"], ["time", "time"], ["load", "load"]];
 const PURPOSES = [["fit", "to fit"], ["validate", "for validation"], ["look", "only to look at"]];
+/** More columns than these are folded away, but for those that are used. */
+const FEW = 5;
 
 /**
  * Listens to what is dropped and chosen.
@@ -54,34 +57,43 @@ function card(file, changed) {
     ...PURPOSES.map(([value, text]) => el("option", { value, selected: value === file.purpose }, text)),
   );
   const facts = file.problem ? `${file.rows} rows` : `${file.samples} samples, ${file.branches} ${file.branches === 1 ? "branch" : "branches"}`;
-  const mend = el(
-    "label",
-    {},
-    el("input", { type: "checkbox", "data-key": `mend-${file.id}`, checked: file.mend, onchange: (/** @type {any} */ e) => send("mend", { on: e.target.checked }) }),
-    " Repair rows",
-  );
+  const isShown = !file.problem && look.isShown(file.id);
+  const name = file.problem ? file.name : el("button", { class: "plain", "data-key": `show-${file.id}`, "aria-pressed": String(isShown), title: "Show this file in the pictures", onclick: () => look.choose(file.id) }, file.name);
+  const isUsed = (/** @type {import("./api.js").Column} */ column) => Object.values(file.roles).includes(column.name);
+  const first = file.columns.filter((column, n) => file.columns.length <= FEW || isUsed(column) || (file.doubts.length > 0 && n < FEW));
+  const others = file.columns.filter((column) => !first.includes(column));
   return el(
     "article",
-    { class: "card", "aria-label": file.name },
-    el("div", { class: "head" }, el("h3", {}, file.name), el("span", { class: "quiet" }, facts)),
-    el("div", { class: "columns" }, ...file.columns.map((column) => columnCard(file, column, send))),
+    { class: isShown ? "card shown" : "card", "aria-label": file.name },
+    el("div", { class: "head" }, el("h3", {}, name), el("button", { class: "plain", "aria-label": `Close ${file.name}`, title: "Close", onclick: () => send("close") }, "✕")),
+    el("div", { class: "quiet" }, facts, file.steps && ", prepared"),
+    el("div", { class: "columns" }, ...first.map((column) => columnRow(file, column, send))),
+    others.length > 0 && el("details", {}, el("summary", { class: "quiet" }, `${others.length} more ${others.length === 1 ? "column" : "columns"}`), el("div", { class: "columns" }, ...others.map((column) => columnRow(file, column, send)))),
     ...file.doubts.map((doubt) => question(file, doubt, send)),
     file.problem &&
       el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
-    prepare.repair(file),
+    file.repair && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))), el("button", { class: "first", "data-key": `repair-${file.id}`, onclick: () => send("mend", { on: true }) }, "Repair rows")),
     file.notes.length > 0 && el("ul", { class: "notes" }, ...file.notes.map((note) => el("li", {}, note))),
-    prepare.form(file, send),
+    segments(file),
     el("details", {}, el("summary", { class: "quiet" }, "Why these columns?"), el("ul", { class: "notes quiet" }, ...file.reasons.map((reason) => el("li", {}, reason)))),
     el(
       "div",
       { class: "row" },
       el("label", {}, "This file is ", purpose),
-      mend,
-      file.marked.length > 0 && el("span", { class: "quiet" }, `Rows ${file.marked.map(([a, b]) => `${a} to ${b}`).join(", ")} are for validation.`),
-      file.marked.length > 0 && el("button", { onclick: () => send("mark", { rows: null }) }, "Fit them again"),
-      el("button", { "aria-label": `Close ${file.name}`, onclick: () => send("close") }, "Close"),
+      file.mend && el("label", {}, el("input", { type: "checkbox", "data-key": `mend-${file.id}`, checked: file.mend, onchange: (/** @type {any} */ e) => send("mend", { on: e.target.checked }) }), " Repair rows"),
+      file.marked.length > 0 && el("button", { class: "chip", "data-key": `marked-${file.id}`, onclick: () => task.show("split") }, `${file.marked.length} ${file.marked.length === 1 ? "span" : "spans"} held out`),
     ),
   );
+}
+
+/** The recordings of a file with several, each a button that shows it. @param {import("./api.js").File} file */
+function segments(file) {
+  if (file.begins.length < 2) return null;
+  const end = (/** @type {number} */ n) => (file.begins[n + 1] ?? file.samples + 1) - 1;
+  const one = (/** @type {number} */ begin, /** @type {number} */ n) =>
+    el("button", { class: "chip", "data-key": `segment-${file.id}-${n}`, title: `Rows ${begin} to ${end(n)}`, "aria-label": `Show recording ${n + 1}, rows ${begin} to ${end(n)}`, onclick: () => look.choose(file.id, file.spans[n]) }, String(n + 1));
+  const all = file.begins.map(one);
+  return el("div", { class: "row segments", role: "group", "aria-label": `Recordings of ${file.name}` }, el("span", { class: "quiet" }, `${all.length} recordings:`), ...all.slice(0, 24), all.length > 24 && el("span", { class: "quiet" }, "…"));
 }
 
 /**
@@ -105,7 +117,7 @@ function question(file, { role, candidates }, send) {
  * @param {import("./api.js").Column} column
  * @param {(request: string, more?: object) => void} send
  */
-function columnCard(file, column, send) {
+function columnRow(file, column, send) {
   const roles = /** @type {any} */ (file.roles);
   const role = ["input", "output", "time", "load"].find((name) => roles[name] === column.name) ?? "";
   const choose = (/** @type {string} */ chosen) => {
@@ -121,9 +133,8 @@ function columnCard(file, column, send) {
   return el(
     "div",
     { class: role ? "column used" : "column" },
-    el("strong", { style: "overflow-wrap:anywhere" }, column.name),
     picture(column),
-    el("div", { class: "quiet" }, `${shown(column.min)} to ${shown(column.max)}`, column.not_numbers > 0 && `, ${column.not_numbers} not numbers`),
+    el("div", {}, el("strong", {}, column.name), el("div", { class: "quiet" }, `${shown(column.min)} to ${shown(column.max)}`, column.not_numbers > 0 && `, ${column.not_numbers} not numbers`)),
     el(
       "select",
       { "data-key": `role-${file.id}-${column.name}`, "aria-label": `What ${column.name} is`, onchange: (/** @type {any} */ e) => choose(e.target.value) },

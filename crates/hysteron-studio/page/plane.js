@@ -1,8 +1,8 @@
 // The plane of operators of one fit: weights, how well they are known, and their states at a sample.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown } from "./dom.js";
-import { draw } from "./plot.js";
+import { by, el, fill, shown, unit } from "./dom.js";
+import { draw, plain, roundest, rounds } from "./plot.js";
 
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
 export const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
@@ -26,11 +26,29 @@ export function at(file, time, overview, drawn) {
   return show(overview, drawn);
 }
 
-/** Levels of a plane as places with a few texts. @param {number[]} levels */
+/** The place of an input between the levels of a plane. @param {number[]} levels @param {number} value */
+const place = (levels, value) => {
+  const after = Math.max(1, levels.findIndex((level) => level >= value));
+  return after - 1 + (value - levels[after - 1]) / (levels[after] - levels[after - 1]);
+};
+
+/** Round inputs at their places between the levels of a plane. @param {number[]} levels */
 function ticks(levels) {
-  const every = Math.max(1, Math.ceil(levels.length / 8));
-  const places = levels.map((_, n) => n).filter((n) => n % every === 0);
-  return { tickvals: places, ticktext: places.map((n) => shown(levels[n])), showgrid: false, zeroline: false };
+  const last = levels.length - 1;
+  const every = Math.max(1, last / 7);
+  const apart = (/** @type {number[]} */ values) => {
+    /** @type {[number, number][]} */
+    const found = [];
+    for (const value of values) {
+      const at = place(levels, value);
+      if (found.length === 0 || at - found[found.length - 1][0] >= 0.7 * every) found.push([at, value]);
+    }
+    return found;
+  };
+  let found = last > 0 ? apart(rounds(levels[0], levels[last])) : [];
+  // Levels may lie close together in one part: then the roundest number between each two of them.
+  if (found.length < 4) found = apart(levels.slice(1).flatMap((level, n) => roundest(levels[n], level)));
+  return { tickvals: found.map(([at]) => at), ticktext: found.map(([, value]) => shown(value)), showgrid: false, zeroline: false };
 }
 
 const STEPS = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];
@@ -82,11 +100,11 @@ export async function show(overview, drawn) {
   const along = (/** @type {0|1} */ axis) => seen.staircase.map((/** @type {number[]} */ point) => point[axis] - 0.5);
   const stairs = (/** @type {string} */ color, /** @type {number} */ width) => ({ x: along(0), y: along(1), mode: "lines", line: { color, width }, hoverinfo: "skip", showlegend: false });
   await draw(by("plot-plane"), [{
-    type: "heatmap", z: seen.values, colorscale: scale, ...ends, hoverongaps: false, xgap: 1, ygap: 1,
-    hovertemplate: "α %{x}, β %{y}: %{z:.4g}<extra></extra>",
+    type: "heatmap", z: seen.values, customdata: seen.levels.map((/** @type {number} */ beta) => seen.levels.map((/** @type {number} */ alpha) => [shown(alpha), shown(beta)])), colorscale: scale, ...ends, hoverongaps: false, xgap: 1, ygap: 1,
+    hovertemplate: `α %{customdata[0]}, β %{customdata[1]}${plain(unit(seen.unit))}: %{z:.4g}<extra></extra>`,
     colorbar: isClass ? bar(by("plot-plane").clientWidth < 480) : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
   }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: axis, yaxis: { ...axis }, dragmode: false });
-  by("plane-caption").textContent = seen.sample
+  by("plane-text").textContent = seen.sample
     ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off.`
-    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample over time for its states and its staircase.";
+    : "One cell for each operator, which switches on at β and off at α. Click a sample for its staircase.";
 }

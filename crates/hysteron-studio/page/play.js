@@ -1,7 +1,7 @@
 // The sample pointed at: its mark in every view, and a play through the time.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown } from "./dom.js";
+import { by, el, fill, shown, unit } from "./dom.js";
 import * as plane from "./plane.js";
 import { mark } from "./plot.js";
 
@@ -37,10 +37,12 @@ export function show(overview, drawn, file, range, samples) {
 }
 
 const words = () => {
-  if (!now.sample) return "Space plays. Arrow keys move the sample.";
+  if (!now.sample) return "Click a sample in any picture. Space plays, arrow keys move.";
   const { row, time, input, output, modelled } = now.sample;
-  const fits = modelled.map(([id, value]) => `, fit ${now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id) + 1}: ${shown(value)}`);
-  return `Row ${row}, at ${shown(time)}: input ${shown(input)}, measured ${shown(output)}${fits.join("")}`;
+  const file = now.overview.files.find((/** @type {any} */ file) => file.id === now.file);
+  const of = unit(file?.output);
+  const fits = modelled.map(([id, value]) => `, fit ${now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id) + 1}: ${shown(value)}${of} (off by ${shown(value - output)})`);
+  return `Row ${row}${file?.roles.time ? `, at ${shown(time)} s` : ""}: input ${shown(input)}${unit(file?.input)}, measured ${shown(output)}${of}${fits.join("")}`;
 };
 
 /** Starts a play, or pauses it. */
@@ -95,8 +97,14 @@ export function shapes(id) {
 
 addEventListener("keydown", (event) => {
   const target = /** @type {HTMLElement} */ (event.target);
-  const inside = target === document.body || (target.closest?.("#look") && !target.closest("button, select, input:not([type=range])"));
-  if (event.key !== " " || !inside || by("look").hidden) return;
+  const inside = target === document.body || (target.closest?.("#look") && !target.closest("button, select, input"));
+  const isSlider = target.id === "play-at";
+  if (by("look").hidden || !(inside || isSlider)) return;
+  const [low, high] = now.range;
+  const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+  if (event.key === " ") toggle();
+  // The slider moves itself.
+  else if (way && !isSlider) to(Math.min(high, Math.max(low, (now.at ?? low) + (way * (high - low)) / Math.max(1, now.steps - 1))));
+  else return;
   event.preventDefault();
-  toggle();
 });

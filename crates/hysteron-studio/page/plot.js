@@ -24,36 +24,75 @@ export function stroke(place) {
   return { color: colour(place), width: 1.8, dash: DASHES[place % DASHES.length] };
 }
 
+/** The colour of a fit's band. @param {number} place */
+export const tint = (place) => `${colour(Math.max(0, place))}33`;
+
 /**
- * Draws, or draws again.
+ * Round numbers within two ends, some six of them.
+ * @param {number} low
+ * @param {number} high
+ */
+export function rounds(low, high) {
+  const rough = (high - low) / 6;
+  const power = 10 ** Math.floor(Math.log10(rough || 1));
+  const step = /** @type {number} */ ([1, 2, 5, 10].find((n) => n * power >= rough)) * power;
+  const first = Math.ceil(low / step - 1e-9);
+  return Array.from({ length: Math.max(0, Math.floor(high / step + 1e-9) - first + 1) }, (_, n) => (first + n) * step);
+}
+
+/**
+ * The roundest number from `low` on and below `high`; none where there is no room.
+ * @param {number} low
+ * @param {number} high
+ */
+export function roundest(low, high) {
+  for (let power = 10 ** Math.ceil(Math.log10(high - low)); power > 1e-9 * (high - low); power /= 10) {
+    for (const step of [5 * power, 2 * power, power]) {
+      const first = Math.ceil(low / step - 1e-9) * step;
+      if (first < high) return [first];
+    }
+  }
+  return [];
+}
+
+/** Pictures follow the width of their place. */
+const sizes = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const node = /** @type {any} */ (target);
+    if (node.layout && node.clientWidth > 0 && Math.abs(node.clientWidth - node._fullLayout.width) > 1) requestAnimationFrame(() => Plotly.Plots.resize(node));
+  }
+});
+
+/**
+ * Draws, or draws again. Pictures that are `aligned` begin and end below each other.
  * @param {HTMLElement} node
  * @param {object[]} traces
  * @param {{x: string, y: string, [more: string]: any}} what
  */
-export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, ...more }) {
+export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, aligned = false, ...more }) {
   const narrow = node.clientWidth < 480;
-  const axis = { gridcolor: ink("line"), zerolinecolor: ink("line"), linecolor: ink("line"), automargin: true, exponentformat: "power", minexponent: 5 };
+  const axis = { gridcolor: ink("line"), zerolinecolor: ink("line"), linecolor: ink("line"), automargin: true, exponentformat: "power", minexponent: 5, nticks: narrow ? 6 : 8 };
+  const title = (/** @type {string} */ text) => ({ text: plain(text), standoff: 6 });
   const layout = {
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
-    font: { color: ink("ink"), family: "system-ui, sans-serif", size: narrow ? 12 : 13 },
-    margin: { l: 8, r: 12, t: 8, b: 8 },
+    font: { color: ink("ink"), family: "system-ui, sans-serif", size: 12 },
+    margin: { l: aligned ? 68 : 8, r: 12, t: 8, b: 8 },
     showlegend: traces.length > 1,
-    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0, font: { size: 11 } },
     hovermode: "closest",
+    hoverdistance: 40,
     dragmode: "zoom",
-    xaxis: { ...axis, title: { text: plain(x), standoff: 6 }, ...xaxis },
-    yaxis: { ...axis, title: { text: plain(y), standoff: 6 }, ...yaxis },
+    xaxis: { ...axis, title: title(x), ...xaxis },
+    yaxis: { ...axis, automargin: !aligned, title: title(y), ...yaxis },
     ...more,
   };
   // On a narrow page a finger scrolls: the buttons zoom.
-  if (narrow && layout.dragmode === "zoom") layout.dragmode = /** @type {any} */ (false);
-  const config = {
-    responsive: true,
-    displaylogo: false,
-    displayModeBar: false,
-  };
-  return Plotly.react(node, traces, layout, config);
+  if (innerWidth < 700 && layout.dragmode === "zoom") layout.dragmode = /** @type {any} */ (false);
+  node.setAttribute("role", "img");
+  node.setAttribute("aria-label", `${y} over ${x}`);
+  sizes.observe(node);
+  return Plotly.react(node, traces, layout, { displaylogo: false, displayModeBar: false });
 }
 
 /**
@@ -84,10 +123,18 @@ export function on(node, event, listener) {
 }
 
 /**
- * The picture as a file.
- * @param {HTMLElement} node
- * @param {"svg" | "png"} format
+ * Pictures as files: each as SVG and as PNG.
+ * @param {HTMLElement[]} nodes
  */
-export function save(node, format) {
-  return Plotly.downloadImage(node, { format, filename: node.id, width: node.clientWidth, height: node.clientHeight, scale: format === "png" ? 2 : 1 });
+export async function archive(nodes) {
+  const files = [];
+  for (const node of nodes) {
+    for (const format of ["svg", "png"]) {
+      const url = await Plotly.toImage(node, { format, width: node.clientWidth, height: node.clientHeight, scale: format === "png" ? 2 : 1 });
+      const data = url.slice(url.indexOf(",") + 1);
+      const bytes = format === "svg" ? new TextEncoder().encode(decodeURIComponent(data)) : Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
+      files.push({ name: `${node.id.slice(5)}.${format}`, bytes });
+    }
+  }
+  return files;
 }

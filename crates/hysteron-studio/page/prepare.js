@@ -1,6 +1,8 @@
-// The preparation of a file: its steps, and what they did.
+// The preparation of the file that is shown: its steps, and what they did.
 
-import { el, shown } from "./dom.js";
+import { ask } from "./api.js";
+import { by, el, fill, shown, unit } from "./dom.js";
+import * as look from "./look.js";
 
 const STEPS = [
   ["spikes", "spikes", "Spikes and bursts. A number: deviations from which on a sample is a spike."],
@@ -12,57 +14,60 @@ const STEPS = [
   ["believe", "believe it", "Prepares also a recording with a frozen channel, rows that come twice, or rows that disagree with the others. on or off."],
 ];
 
-/** Open forms, by file: they stay open when the page is drawn again. @type {Set<number>} */
-const opened = new Set();
+/** What was typed and is not sent yet, by file: it stays when the page is drawn again. @type {Map<number, Record<string, string>>} */
+const typed = new Map();
 
 /**
- * @param {import("./api.js").File} file
- * @param {(request: string, more?: object) => void} send
+ * @param {import("./api.js").Overview} overview
+ * @param {(overview: any) => void} changed
  */
-export function form(file, send) {
-  if (file.problem && !file.steps) return null;
-  const steps = /** @type {Record<string, string>} */ (file.steps ?? { spikes: "auto", low_pass: "auto", dead_band: "auto", lag: "off", resample: "auto", signs: "off", believe: "off" });
+export function show(overview, changed) {
+  const file = overview.files.find((file) => look.isShown(file.id));
+  if (!file) return fill(by("prepare"));
+  const steps = { spikes: "auto", low_pass: "auto", dead_band: "auto", lag: "off", resample: "auto", signs: "off", believe: "off", ...file.steps, ...typed.get(file.id) };
+  const send = (/** @type {object | null} */ steps) => ask("prepare", { file: file.id, steps }).then((found) => {
+    typed.delete(file.id);
+    changed(found);
+  }, () => {});
   const field = (/** @type {string[]} */ [name, title, meaning]) =>
-    el("label", { class: "field" }, el("span", {}, title), el("input", { name, type: "text", value: steps[name], list: "steps", autocomplete: "off", required: true }), el("small", {}, meaning));
+    el("label", { class: "field" }, el("span", {}, title), el("input", { name, type: "text", value: /** @type {any} */ (steps)[name], list: "steps", autocomplete: "off", required: true, "data-key": `step-${name}`, oninput: (/** @type {any} */ e) => typed.set(file.id, { ...typed.get(file.id), [name]: e.target.value }) }), el("small", {}, meaning));
   const submit = (/** @type {any} */ event) => {
     event.preventDefault();
-    send("prepare", { steps: Object.fromEntries(/** @type {any} */ (new FormData(event.target))) });
+    send(Object.fromEntries(/** @type {any} */ (new FormData(event.target))));
   };
-  return el(
-    "details",
-    { class: "prepare", open: opened.has(file.id) || file.steps !== null, ontoggle: (/** @type {any} */ e) => void (e.target.open ? opened.add(file.id) : opened.delete(file.id)) },
-    el("summary", {}, file.steps ? "Prepared" : "Prepare: spikes, noise, false reversals, lag"),
+  fill(
+    by("prepare"),
+    el("p", {}, el("strong", {}, file.name), file.steps ? " is prepared. Fits take what is prepared." : " is as it was read."),
+    ...file.preparation.map((done) => report(done, file)),
     el("form", { onsubmit: submit },
-      el("div", { class: "fields" }, ...STEPS.map(field)),
       el("div", { class: "row" },
-        el("button", { class: "first", "data-key": `prepare-${file.id}` }, "Prepare"),
-        file.steps && el("button", { type: "button", "data-key": `raw-${file.id}`, onclick: () => (opened.delete(file.id), send("prepare", { steps: null })) }, "Take it as it was read"),
-        el("small", { class: "quiet" }, "Each step: auto, off or a number; taken by itself only where it helps."))),
-    ...file.preparation.map(report),
+        el("button", { class: "first", "data-key": `prepare-${file.id}` }, file.steps ? "Prepare again" : "Prepare"),
+        file.steps && el("button", { type: "button", "data-key": `raw-${file.id}`, onclick: () => send(null) }, "Take it as it was read")),
+      el("p", { class: "quiet" }, "Each step: auto, off or a number. By itself a step is taken only where it helps."),
+      el("div", { class: "fields" }, ...STEPS.map(field))),
   );
 }
 
-/** @param {any} done */
-function report({ samples_before, samples, input_noise, output_noise, spikes, resampled, low_pass, lag, dead_band, judged }) {
+/**
+ * What a preparation did, in numbers.
+ * @param {any} done
+ * @param {import("./api.js").File} file
+ */
+function report({ samples_before, samples, input_noise, output_noise, spikes, resampled, low_pass, lag, dead_band, judged }, file) {
+  const [input, output] = [unit(file.input), unit(file.output)];
   const of = (/** @type {any} */ repairs) => `${repairs.spikes} spikes, ${repairs.signs} lost signs${repairs.first.length > 0 ? ` (rows ${repairs.first.join(", ")}${repairs.spikes + repairs.signs > repairs.first.length ? ", …" : ""})` : ""}`;
-  const filter = (/** @type {any} */ one) => (one ? `cut-off ${shown(one.cutoff)} ${low_pass.in_hertz ? "Hz" : "cycles a sample"}, removed ${shown(one.removed)} (root mean square)` : "not needed");
+  const filter = (/** @type {any} */ one, /** @type {string} */ of) => (one ? `cut-off ${shown(one.cutoff)} ${low_pass.in_hertz ? "Hz" : "cycles a sample"}, removed ${shown(one.removed)}${of} (root mean square)` : "not needed");
   const rows = [
     ["Samples", samples === samples_before ? String(samples) : `${samples_before} before, ${samples} after`],
-    ["Noise of the input, of the output", `${shown(input_noise)}, ${shown(output_noise)} (standard deviation)`],
+    ["Noise of the input, of the output", `${shown(input_noise)}${input}, ${shown(output_noise)}${output} (standard deviation)`],
     ["Spikes of the input", spikes && of(spikes.input)],
     ["Spikes of the output", spikes && of(spikes.output)],
-    ["Low-pass of the input", low_pass && filter(low_pass.input)],
-    ["Low-pass of the output", low_pass && filter(low_pass.output)],
-    ["False reversals of the input", dead_band && `${dead_band.false_reversals} removed up to ${shown(dead_band.size)}: ${dead_band.samples_changed} samples changed by at most ${shown(dead_band.largest_change)}`],
+    ["Low-pass of the input", low_pass && filter(low_pass.input, input)],
+    ["Low-pass of the output", low_pass && filter(low_pass.output, output)],
+    ["False reversals of the input", dead_band && `${dead_band.false_reversals} removed up to ${shown(dead_band.size)}${input}: ${dead_band.samples_changed} samples changed by at most ${shown(dead_band.largest_change)}${input}`],
     ["Lag of the sensor", lag && (lag.undone === null ? `not undone: the best, ${shown(lag.estimate)} s, makes no fit 10 % better` : `${shown(lag.undone)} s undone`)],
     ["Steps of time", resampled && `${shown(resampled)} s`],
-    ...judged.map((/** @type {any} */ one) => [`Worth: ${one.step}`, one.before === null ? "not taken: the recording is too short to tell" : `${one.kept ? "taken" : "not taken"}: a model errs by ${shown(one.after)} on what it did not see, without this step by ${shown(one.before)}`]),
+    ...judged.map((/** @type {any} */ one) => [`Worth: ${one.step}`, one.before === null ? "not taken: the recording is too short to tell" : `${one.kept ? "taken" : "not taken"}: a model errs by ${shown(one.after)}${output} on what it did not see, without this step by ${shown(one.before)}${output}`]),
   ];
   return el("table", { class: "report" }, ...rows.filter(([, text]) => text).map(([name, text]) => el("tr", {}, el("th", { scope: "row" }, name), el("td", {}, text))));
-}
-
-/** What repaired rows would be, where they are refused. @param {import("./api.js").File} file */
-export function repair(file) {
-  if (!file.repair) return null;
-  return el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))));
 }

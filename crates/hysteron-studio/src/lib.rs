@@ -19,8 +19,8 @@ pub use page::{PageFile, STATIC_SESSION, static_page};
 #[cfg(feature = "server")]
 pub use server::Server;
 pub use session::{
-    Answer, Area, ColumnView, Curves, DesignView, Download, DriveView, Fault, FileView, Finished,
-    FitView, Held, Id, Job, JobView, Line, Overview, Part, Picture, PlaneKind, PlaneView, Pull,
-    Purpose, RepairView, Request, Response, RivalView, SampleView, Session, Steps, Take, Told,
-    View, Wish,
+    Answer, Area, ColumnView, Curves, DesignView, Download, DriveView, Ends, Fault, FileView,
+    Finished, FitView, Held, Id, Job, JobView, Layers, Line, Overview, Part, Picture, PlaneKind,
+    PlaneView, Pull, Purpose, RepairView, Request, Response, RivalView, SampleView, Session, Steps,
+    Take, Told, View, Wish, WorstView,
 };

@@ -85,7 +85,8 @@ impl HeldOut {
 /// If rows at the beginning or in the middle are held out, the state of the operators after them is
 /// not known. Then the start is [`Start::Unknown`], whatever `fit` says.
 ///
-/// Rows of several recordings are counted through all of them, one after the other.
+/// Rows of several recordings are counted through all of them, one after the other. Where a part and
+/// other recordings are held out, the errors are over both.
 ///
 /// ```
 /// use hysteron::{Fit, HoldOut, Recording, fit_holding_out};
@@ -110,9 +111,11 @@ pub fn fit_holding_out(
     what: &HoldOut,
 ) -> Result<(Model, HeldOut)> {
     let recordings = recordings.as_ref();
-    if let HoldOut::Recordings(others) = what {
+    let others = what.recordings();
+    others.iter().try_for_each(|other| other.check())?;
+    if what.part().is_none() {
         let mut model = fit.run(recordings)?;
-        let report = held_out(&model, recordings, others)?;
+        let report = tested(&model, recordings, &others)?;
         report.record_in(&mut model);
         return Ok((model, report));
     }
@@ -153,8 +156,11 @@ pub fn fit_holding_out(
         .collect();
     let acting = model.delay().of_recordings(recordings);
     tell_errors(&mut model, &acting, |n| !held[n])?;
-    let (measured, modelled) = simulated(&model, recordings)?;
-    let report = compare(&training, recordings, &measured, &modelled, |n| held[n])?;
+    // The other recordings come behind those fitted, and all of them is held out.
+    let all: Vec<&Recording> = recordings.iter().chain(others).collect();
+    let outputs = simulated(&model, &all)?;
+    let is_held = |n: usize| held.get(n).copied().unwrap_or(true);
+    let report = compare(&training, &all, &outputs, is_held)?;
     report.record_in(&mut model);
     Ok((model, report))
 }
@@ -169,14 +175,18 @@ pub fn held_out(
     fitted: &(impl AsRef<[Recording]> + ?Sized),
     held_out: &(impl AsRef<[Recording]> + ?Sized),
 ) -> Result<HeldOut> {
-    let recordings = held_out.as_ref();
-    recordings.iter().try_for_each(Recording::check)?;
-    let (measured, modelled) = simulated(model, recordings)?;
-    compare(fitted.as_ref(), recordings, &measured, &modelled, |_| true)
+    let recordings: Vec<&Recording> = held_out.as_ref().iter().collect();
+    recordings.iter().try_for_each(|one| one.check())?;
+    tested(model, fitted.as_ref(), &recordings)
+}
+
+fn tested(model: &Model, fitted: &[Recording], recordings: &[&Recording]) -> Result<HeldOut> {
+    let outputs = simulated(model, recordings)?;
+    compare(fitted, recordings, &outputs, |_| true)
 }
 
 /// The measured outputs of all recordings, and those of the model from where it starts.
-fn simulated(model: &Model, recordings: &[Recording]) -> Result<(Vec<f64>, Vec<f64>)> {
+fn simulated(model: &Model, recordings: &[&Recording]) -> Result<(Vec<f64>, Vec<f64>)> {
     let (mut measured, mut modelled) = (Vec::new(), Vec::new());
     for recording in recordings {
         let recording = model.delay().of_recording(recording);
@@ -205,9 +215,8 @@ fn count_in_file(model: &mut Model, splits: &[Split]) {
 
 fn compare(
     training: &[Recording],
-    recordings: &[Recording],
-    measured: &[f64],
-    modelled: &[f64],
+    recordings: &[&Recording],
+    (measured, modelled): &(Vec<f64>, Vec<f64>),
     which: impl Fn(usize) -> bool,
 ) -> Result<HeldOut> {
     let nothing = || Error::Fit("nothing was held out".into());

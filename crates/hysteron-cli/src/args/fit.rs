@@ -119,8 +119,8 @@ pub(crate) struct FitHow {
     pub(crate) prior: Option<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:
     /// `branches:20%` or just `20%` (a share up to 33 %, spread over the recording), `rows:A-B,C-D`
-    /// (counted from 1, after the preparation, through all that is fitted), or another recording. A
-    /// FILE may be given several times
+    /// (counted from 1, after the preparation, through all that is fitted), or another recording. It
+    /// may be given several times: one part, and any number of files
     #[arg(long, value_name = "WHAT|FILE", value_parser = parse_hold_out)]
     pub(crate) hold_out: Vec<HoldOut>,
     /// Lowest and highest level [default: so that the active range is that of the input]
@@ -147,7 +147,7 @@ pub(crate) struct FitHow {
     #[command(flatten)]
     pub(crate) repair: Repair,
     #[command(flatten)]
-    pub(crate) prepare: PrepareBeforeFit,
+    pub(crate) prepare: PrepareFirst,
 }
 
 #[derive(Args)]
@@ -181,9 +181,9 @@ pub(crate) struct Prepare {
 }
 
 #[derive(Args)]
-pub(crate) struct PrepareBeforeFit {
+pub(crate) struct PrepareFirst {
     /// Column of time, in seconds or with its unit in its name: for the preparation, a thermal
-    /// body, and a warning if loops depend on rate
+    /// body, figures over time, and a warning if loops depend on rate
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named

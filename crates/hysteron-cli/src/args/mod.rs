@@ -236,10 +236,8 @@ pub(crate) struct Evaluate {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time, in seconds or with its unit in its name, for the report's figures and for a
-    /// model with a thermal body
-    #[arg(long, value_name = "COL")]
-    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) prepare: PrepareFirst,
     /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: Start,

@@ -49,8 +49,9 @@ fn every_way_of_holding_out_is_reported_and_kept() {
         ("rows:701-900", 200..201),
         ("rows:300-499", 200..201),
         ("other.csv", 700..701),
+        ("rows:701-900 --hold-out other.csv", 900..901),
     ] {
-        let what = what.replace(' ', "");
+        let what = what.replace(": 30 ", ":30");
         let fitted = json(path, &format!("{FIT} --hold-out {what} -o m.json"));
         let held_out = &fitted["hold_out"];
         let count = held_out["model"]["samples"].as_u64().unwrap() as usize;
@@ -151,7 +152,10 @@ fn what_cannot_be_held_out_is_refused() {
         ("rows:0-10", "rows 1 to 900"),
         ("rows:10-901", "rows 1 to 900"),
         ("missing.csv", "missing.csv"),
-        ("rows:1-9 --hold-out branches:20%", "for files only"),
+        (
+            "rows:1-9 --hold-out branches:20%",
+            "one part of the recording",
+        ),
     ] {
         let refusal = refused(path, &format!("{FIT} --hold-out {what} -o n.json"));
         assert!(refusal.contains(said), "{what}: {refusal}");
@@ -161,6 +165,10 @@ fn what_cannot_be_held_out_is_refused() {
     let two = "fit run.csv other.csv --input x --output y --hold-out rows:1-9999 -o n.json";
     assert!(refused(path, two).contains("some have to be left"));
     assert!(!path.join("n.json").exists());
+    // Rows are counted through all that is fitted.
+    let two = "fit run.csv other.csv --input x --output y --levels 12 --bootstrap 0";
+    let fitted = json(path, &format!("{two} --hold-out rows:896-905 -o n.json"));
+    assert_eq!(fitted["hold_out"]["model"]["samples"], 10);
 }
 
 #[test]

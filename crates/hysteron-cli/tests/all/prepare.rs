@@ -109,6 +109,28 @@ fn a_fit_prepares_when_told_to() {
     assert_eq!(one_step["low_pass"], Value::Null);
 }
 
+/// An evaluation prepares as the fit did: what was read wrongly is no error of the model.
+#[test]
+fn an_evaluation_prepares_when_told_to() {
+    let folder = rough_recording();
+    let path = folder.path();
+    let fit = format!("fit {COLUMNS} --prepare --levels 12 --bootstrap 0 -o m.json");
+    assert!(run(path, &fit).status.success());
+    let largest = |options: &str| {
+        let done = run(path, &format!("evaluate m.json {COLUMNS} --json {options}"));
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        let found: Value = serde_json::from_slice(&done.stdout).unwrap();
+        (
+            found["forward"]["max_abs"].as_f64().unwrap(),
+            text(&done.stderr).contains("spikes: 2 in x"),
+        )
+    };
+    let (as_read, is_silent) = largest("");
+    let (prepared, says) = largest("--prepare");
+    assert!(prepared < 0.3 * as_read, "{prepared} {as_read}");
+    assert!(says && !is_silent);
+}
+
 #[test]
 fn what_cannot_be_done_is_said_and_leaves_nothing() {
     let folder = rough_recording();

@@ -5,6 +5,7 @@ use super::shape::{Anchor, Rect, Short, rect_data};
 use super::style::{INK, Stroke};
 use super::text::FAMILIES;
 use hysteron::printable;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// An SVG document under construction. Its ids begin with `stem`, so that figures can share one
@@ -18,6 +19,8 @@ pub(crate) struct Canvas {
     pub(crate) plots: Vec<Plot>,
     /// The words beside the panels.
     pub(crate) words: Vec<Words>,
+    /// Lines through so many samples break before these.
+    breaks: (usize, Vec<usize>),
 }
 
 // Writing to a string cannot fail, so the results are ignored.
@@ -29,7 +32,28 @@ impl Canvas {
             body: String::new(),
             plots: Vec::new(),
             words: Vec::new(),
+            breaks: (0, Vec::new()),
         }
+    }
+
+    /// From now on, lines through so many samples break before these of them.
+    pub(crate) fn breaking(&mut self, (samples, before): (usize, &[usize])) {
+        self.breaks = (samples, before.to_vec());
+    }
+
+    /// Values of a line, with a gap at each break: `gap` makes it of the value before.
+    pub(crate) fn broken<'v>(&self, values: &'v [f64], gap: fn(f64) -> f64) -> Cow<'v, [f64]> {
+        let (samples, before) = &self.breaks;
+        if values.len() != *samples || before.is_empty() {
+            return values.into();
+        }
+        let gaps = |n| before.binary_search(&(n + 1)).is_ok();
+        let each = values.iter().enumerate();
+        let each = each.flat_map(|(n, value)| {
+            let gap = gaps(n).then(|| gap(*value));
+            std::iter::once(*value).chain(gap)
+        });
+        each.collect()
     }
 
     pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: &Stroke) {

@@ -97,15 +97,19 @@ impl Panel {
 
     /// A curve over time.
     pub(crate) fn curve(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], stroke: &Stroke) {
-        self.strokes(canvas, &decimate::columns(self.points(xs, ys)), stroke);
-        self.plot(canvas, |plot| plot.lines.push(Line::curve(xs, ys, *stroke)));
+        let (xs, ys) = (canvas.broken(xs, |x| x), canvas.broken(ys, |_| f64::NAN));
+        self.strokes(canvas, &decimate::columns(self.points(&xs, &ys)), stroke);
+        self.plot(canvas, |plot| {
+            plot.lines.push(Line::curve(&xs, &ys, *stroke));
+        });
     }
 
     /// A curve that returns on itself.
     pub(crate) fn loops(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], stroke: &Stroke) {
-        self.strokes(canvas, &decimate::loops(self.points(xs, ys)), stroke);
+        let (xs, ys) = (canvas.broken(xs, |x| x), canvas.broken(ys, |_| f64::NAN));
+        self.strokes(canvas, &decimate::loops(self.points(&xs, &ys)), stroke);
         self.plot(canvas, |plot| {
-            plot.lines.push(Line::returning(xs, ys, *stroke))
+            plot.lines.push(Line::returning(&xs, &ys, *stroke))
         });
     }
 
@@ -161,7 +165,9 @@ impl Panel {
         [low, high]: &[Vec<f64>; 2],
         fill: &'static str,
     ) {
-        let edges = self.points(xs, low).zip(self.points(xs, high));
+        let xs = canvas.broken(xs, |x| x);
+        let [low, high] = [low, high].map(|edge| canvas.broken(edge, |_| f64::NAN));
+        let edges = self.points(&xs, &low).zip(self.points(&xs, &high));
         let d: String = decimate::covered(edges, self.area.x, self.area.right())
             .into_iter()
             .map(|[x, top, bottom]| {
@@ -174,7 +180,7 @@ impl Panel {
             })
             .collect();
         canvas.clipped(self.area, |canvas| canvas.path(&d, Some(fill), None));
-        self.plot(canvas, |plot| plot.band(xs, [low, high], fill));
+        self.plot(canvas, |plot| plot.band(&xs, [&low, &high], fill));
         self.grid(canvas);
         self.frame(canvas);
     }

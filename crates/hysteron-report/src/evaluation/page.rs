@@ -17,10 +17,9 @@ impl Subject for View<'_> {
     fn sections() -> Vec<Section<Self>> {
         let first = vec![loops::figure(), output_time::figure(), input_time::figure()];
         let forward = vec![
-            load_measured::figure(),
-            discrepancy::output(),
-            residuals::over_input(),
-            residuals::histogram(),
+            vec![load_measured::figure()],
+            vec![discrepancy::output()],
+            vec![residuals::over_input(), residuals::histogram()],
         ];
         let inverse = vec![discrepancy::input(), close_up::figure()];
         let confidence = vec![
@@ -37,7 +36,7 @@ impl Subject for View<'_> {
                 notes: |view| [html! {}, errors(view)],
                 ..Section::column("Measured and modelled", first)
             },
-            Section::column("Errors of the output", forward),
+            Section::new("Errors of the output", forward),
             Section {
                 notes: about_inverse,
                 ..Section::column("Errors of the inverse", inverse)
@@ -48,6 +47,10 @@ impl Subject for View<'_> {
             },
             Section::new("The model: the plane", model),
         ]
+    }
+
+    fn begins(&self) -> (usize, &[usize]) {
+        (self.recording.len(), &self.begins)
     }
 
     fn simulated(&self) -> Option<Simulated> {

@@ -1,17 +1,18 @@
 //! Reports as a whole, of good recordings and of poor ones.
 #![allow(clippy::unwrap_used)]
 
+use crate::draw::style::MEASURED;
 use crate::evaluation::fixture::{Fixture, sma};
 use crate::made::Made;
 use crate::report::{Report, Shown};
-use hysteron::{Origin, Quantity, Recording};
+use hysteron::{Origin, Quantity, Recording, evaluate};
 
 fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
     Report {
         title,
         shown: Shown::Evaluation {
             model: &fixture.model,
-            recording: &fixture.recording,
+            recordings: fixture.recording.as_ref(),
             evaluation: &fixture.evaluation,
         },
         made: Made::default(),
@@ -298,4 +299,28 @@ fn all_figures_of_a_page_have_one_scale() {
             .and_then(|rest| rest.split(' ').next());
         assert_eq!(width, drawn);
     }
+}
+
+#[test]
+fn a_line_breaks_where_a_recording_begins() {
+    let fixture = sma(400);
+    let pieces = |recordings: &[Recording]| {
+        let report = Report {
+            title: "",
+            shown: Shown::Evaluation {
+                model: &fixture.model,
+                recordings,
+                evaluation: &evaluate(&fixture.model, recordings).unwrap(),
+            },
+            made: Made::default(),
+        };
+        ["fig10-output-time", "fig11-loops"].map(|stem| {
+            let svg = report.svg(stem).unwrap().unwrap();
+            svg.matches(&format!("stroke=\"{}\"", MEASURED.colour))
+                .count()
+        })
+    };
+    let one = std::slice::from_ref(&fixture.recording);
+    let [over_time, looped] = pieces(one);
+    assert_eq!(pieces(&[one, one].concat()), [over_time + 1, looped + 1]);
 }

@@ -5,12 +5,15 @@ use crate::error::ReportError;
 use crate::evaluation::source::Source;
 use crate::quantity::Labelled;
 use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
-use hysteron::{Model, Origin, Recording, Verdict};
+use hysteron::{Model, Origin, Recording, Verdict, one_after_the_other};
 use std::borrow::Cow;
 
 /// An evaluation, ready to be drawn.
 pub(crate) struct View<'a> {
-    pub(crate) recording: &'a Recording,
+    /// All recordings, one after the other.
+    pub(crate) recording: Cow<'a, Recording>,
+    /// The first samples of all recordings but the first one.
+    pub(crate) begins: Vec<usize>,
     pub(crate) evaluation: &'a Evaluation,
     /// `None` for a recording that no error can be told of.
     pub(crate) verdict: Option<Verdict>,
@@ -26,9 +29,15 @@ impl<'a> View<'a> {
     /// The parts, once they fit together.
     pub(crate) fn new(
         model: &'a Model,
-        recording: &'a Recording,
+        recordings: &'a [Recording],
         evaluation: &'a Evaluation,
     ) -> Result<Self, ReportError> {
+        let recording = one_after_the_other(recordings).ok_or(ReportError::NoRecording)?;
+        let ends = recordings.iter().scan(0, |end, recording| {
+            *end += recording.len();
+            Some(*end)
+        });
+        let begins = ends.take(recordings.len() - 1).collect();
         let expected = recording.input.len();
         let mut lengths = vec![
             ("recording.output", recording.output.len()),
@@ -53,16 +62,18 @@ impl<'a> View<'a> {
                 found,
             });
         }
-        let verdict = Verdict::of_evaluation(recording, evaluation).ok();
+        let verdict = Verdict::of_evaluation(recordings, evaluation).ok();
         let source = Source::new(model);
-        let (time, time_label) = clock(recording);
+        let (time, time_label) = clock(&recording);
+        let time = time.into_owned().into();
         Ok(Self {
+            input: Labelled::first([&recording.input_quantity, source.input()], "input"),
+            output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             recording,
+            begins,
             evaluation,
             verdict,
             source,
-            input: Labelled::first([&recording.input_quantity, source.input()], "input"),
-            output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             time,
             time_label,
         })

@@ -19,16 +19,16 @@ struct CarriedJob {
     fitted: Vec<Id>,
     recordings: Vec<CarriedRecording>,
     options: BTreeMap<String, String>,
-    hold_out: Option<CarriedHoldOut>,
+    part: Option<CarriedPart>,
+    others: Vec<CarriedRecording>,
     words: String,
     validated: Vec<Id>,
 }
 
 #[derive(Serialize, Deserialize)]
-enum CarriedHoldOut {
+enum CarriedPart {
     Branches(f64),
     Rows(Vec<RangeInclusive<usize>>),
-    Recordings(Vec<CarriedRecording>),
 }
 
 /// A recording. Its numbers are base64 of their bytes: exact, and read in no time.
@@ -55,17 +55,20 @@ impl Job {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let recordings = |all: &[Recording]| all.iter().map(CarriedRecording::new).collect();
-        let hold_out = self.hold_out.as_ref().map(|hold_out| match hold_out {
-            HoldOut::Branches(share) => CarriedHoldOut::Branches(*share),
-            HoldOut::Rows(rows) => CarriedHoldOut::Rows(rows.clone()),
-            HoldOut::Recordings(all) => CarriedHoldOut::Recordings(recordings(all)),
+        let part = self.hold_out.as_ref().and_then(HoldOut::part);
+        let part = part.and_then(|part| match part {
+            HoldOut::Branches(share) => Some(CarriedPart::Branches(*share)),
+            HoldOut::Rows(rows) => Some(CarriedPart::Rows(rows.clone())),
+            HoldOut::Recordings(_) | HoldOut::Both(..) => None,
         });
+        let others = self.hold_out.iter().flat_map(HoldOut::recordings);
         let carried = CarriedJob {
             id: self.id,
             fitted: self.fitted.clone(),
             recordings: recordings(&self.recordings),
             options: self.options.clone(),
-            hold_out,
+            part,
+            others: others.map(CarriedRecording::new).collect(),
             words: self.words.clone(),
             validated: self.validated.clone(),
         };
@@ -82,18 +85,16 @@ impl Job {
             let all = all.into_iter().map(CarriedRecording::recording);
             all.collect::<Result<Vec<_>, _>>()
         };
-        let hold_out = match job.hold_out {
-            None => None,
-            Some(CarriedHoldOut::Branches(share)) => Some(HoldOut::Branches(share)),
-            Some(CarriedHoldOut::Rows(rows)) => Some(HoldOut::Rows(rows)),
-            Some(CarriedHoldOut::Recordings(all)) => Some(HoldOut::Recordings(recordings(all)?)),
-        };
+        let part = job.part.map(|part| match part {
+            CarriedPart::Branches(share) => HoldOut::Branches(share),
+            CarriedPart::Rows(rows) => HoldOut::Rows(rows),
+        });
         Ok(Self {
             id: job.id,
             fitted: job.fitted,
             recordings: recordings(job.recordings)?,
             options: job.options,
-            hold_out,
+            hold_out: HoldOut::together(part, recordings(job.others)?),
             words: job.words,
             validated: job.validated,
             watch: Arc::new(Watch::default()),

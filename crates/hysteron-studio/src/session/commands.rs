@@ -2,7 +2,7 @@
 
 use super::argument::{option, path};
 use super::fitted::Fitted;
-use super::fitting::FILES;
+use super::fitting::held_part;
 use super::id::Id;
 use super::opened::Opened;
 use super::prepare::Steps;
@@ -31,6 +31,11 @@ fn roles(file: &Opened) -> Vec<(&'static str, &str)> {
         .collect()
 }
 
+/// The part of the files fitted that was held out, in words.
+fn held_part_of(fit: &Fitted) -> Option<&str> {
+    Some(held_part(&fit.words)).filter(|part| !part.is_empty())
+}
+
 pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
     let fitted = files(session, &fit.files);
     let names: Vec<String> = fitted.iter().map(|file| path(&file.name)).collect();
@@ -54,17 +59,13 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
     );
     let options = fit.options.iter();
     words.extend(options.map(|(name, text)| option(&name.replace('_', "-"), text)));
-    words.extend(match fit.words.as_str() {
-        "" => Vec::new(),
-        FILES => {
-            let others = files(session, &fit.validated);
-            others
-                .iter()
-                .map(|file| format!("--hold-out {}", path(&file.name)))
-                .collect()
-        }
-        part => vec![option("hold-out", part)],
-    });
+    words.extend(held_part_of(fit).map(|part| option("hold-out", part)));
+    let others = files(session, &fit.validated);
+    words.extend(
+        others
+            .iter()
+            .map(|file| format!("--hold-out {}", path(&file.name))),
+    );
     words.push("-o model.json".into());
     let mut text = words.join(" \\\n    ") + "\n";
     let test = files(session, &fit.validated);
@@ -149,14 +150,17 @@ pub(super) fn python(session: &Session, fit: &Fitted) -> String {
         "import pyhysteron\n\nrecordings = {}\n",
         list(files(session, &fit.files))
     );
-    match fit.words.as_str() {
-        "" => {}
-        FILES => {
-            text += &format!("tests = {}\n", list(files(session, &fit.validated)));
-            words.push("hold_out=tests".into());
-        }
-        part => words.push(format!("hold_out={}", python_literal(part))),
+    let tests = files(session, &fit.validated);
+    if !tests.is_empty() {
+        text += &format!("tests = {}\n", list(tests.clone()));
     }
+    let part = held_part_of(fit).map(python_literal);
+    words.extend(match (part, tests.is_empty()) {
+        (None, true) => None,
+        (None, false) => Some("hold_out=tests".into()),
+        (Some(part), true) => Some(format!("hold_out={part}")),
+        (Some(part), false) => Some(format!("hold_out=[{part}, *tests]")),
+    });
     text += &format!("model = pyhysteron.fit({})\n", words.join(", "));
     text + "print(model.fit.nrmse_percent)\nmodel.save(\"model.json\")\n"
 }
@@ -248,16 +252,17 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
         text += &format!("\n    .with({}, {})?", literal(name), literal(word));
     }
     text += ";\n";
-    text += &match fit.words.as_str() {
-        "" => "let model = fit.run(&recordings)?;\n".to_owned(),
-        FILES => format!(
-            "let hold_out = HoldOut::Recordings({});\n{HELD}",
-            list(&fit.validated)
-        ),
-        part => format!(
-            "let hold_out: HoldOut = {}.parse()?;\n{HELD}",
-            literal(part)
-        ),
+    let part = held_part_of(fit).map(literal);
+    let others = (!fit.validated.is_empty()).then(|| list(&fit.validated));
+    text += &match (part, others) {
+        (None, None) => "let model = fit.run(&recordings)?;\n".to_owned(),
+        (None, Some(others)) => {
+            format!("let hold_out = HoldOut::Recordings({others});\n{HELD}")
+        }
+        (Some(part), None) => format!("let hold_out: HoldOut = {part}.parse()?;\n{HELD}"),
+        (Some(part), Some(others)) => {
+            format!("let hold_out = HoldOut::Both(Box::new({part}.parse()?), {others});\n{HELD}")
+        }
     };
     text + "model.write(\"model.json\")?;\n"
 }

@@ -121,6 +121,27 @@ pub struct RivalView {
     pub trail: Vec<[f64; 2]>,
 }
 
+/// Ends that are apart, in order.
+fn ordered((a, b): (f64, f64)) -> Option<(f64, f64)> {
+    let way = (b - a).abs();
+    (way > 0.0 && way.is_finite()).then(|| (a.min(b), a.max(b)))
+}
+
+/// The inputs that move the model, of those that were recorded.
+fn inputs(model: &Model, recorded: (f64, f64)) -> (f64, f64) {
+    let active = match model.thermal {
+        Some(_) => ordered(model.drive_range()),
+        None => ordered(model.active_range()),
+    };
+    let both = active.map(|(low, high)| (low.max(recorded.0), high.min(recorded.1)));
+    both.filter(|(low, high)| low < high).unwrap_or(recorded)
+}
+
+/// The outputs from every operator off to every operator on.
+fn stroke(model: &Model) -> Option<(f64, f64)> {
+    ordered(model.output_range())
+}
+
 impl Drive {
     /// The model of a fit, with every operator off and at its lowest input.
     ///
@@ -145,10 +166,11 @@ impl Drive {
             rival: None,
             wanted: None,
             moves: Vec::new(),
-            inputs: fitted.input,
-            outputs: fitted.output,
+            inputs: inputs(&model, fitted.input),
+            outputs: stroke(&model).unwrap_or(fitted.output),
             model,
         };
+        drive.way.input = drive.inputs.0;
         drive.push(drive.inputs.0)?;
         Ok(drive)
     }

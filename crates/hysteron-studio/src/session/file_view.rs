@@ -59,6 +59,8 @@ pub struct FileView {
     pub samples: usize,
     /// The first sample of each recording, counted from 1: the actuator's history does not go on.
     pub begins: Vec<usize>,
+    /// The time of the first and of the last sample of each recording.
+    pub spans: Vec<(f64, f64)>,
     /// Branches of its input.
     pub branches: usize,
     /// The input, with its unit.
@@ -126,6 +128,7 @@ impl Opened {
             marked: self.marked.clone(),
             samples: recording.map_or(0, |recording| recording.len()),
             begins: begins.map(|begin| begin + 1).collect(),
+            spans: self.spans(),
             branches: self.branches,
             input: shown(|recording| &recording.input_quantity),
             output: shown(|recording| &recording.output_quantity),

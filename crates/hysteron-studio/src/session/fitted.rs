@@ -1,6 +1,7 @@
 //! What a fit found, and which fit is the best.
 
 use super::id::Id;
+use super::layers::Spans;
 use hysteron::{Budget, Errors, HeldOut, Model, Quantity, State};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -17,6 +18,8 @@ pub(super) struct Fitted {
     pub(super) validated: Vec<Id>,
     pub(super) model: Arc<Model>,
     pub(super) held_out: Option<HeldOut>,
+    /// The errors of the inverse on what was fitted, while the output moves.
+    pub(super) inverse: Option<Errors>,
     pub(super) advice: Vec<String>,
     /// Whether it is good enough: headings and sentences.
     pub(super) verdict: Vec<(String, String)>,
@@ -27,6 +30,10 @@ pub(super) struct Fitted {
     pub(super) dt: Option<f64>,
     /// The modelled output on each file that it was drawn with.
     pub(super) courses: BTreeMap<Id, (Arc<Vec<f64>>, Budget)>,
+    /// Half the width of the band there.
+    pub(super) bands: BTreeMap<Id, (Arc<Vec<f64>>, Budget)>,
+    /// The rows of each file that were held out.
+    pub(super) held: BTreeMap<Id, Spans>,
     /// A file, a number of its rows, and the state after them.
     pub(super) reached: Option<(Id, usize, State)>,
 }
@@ -52,6 +59,9 @@ pub struct FitView {
     pub max_abs: f64,
     /// Errors over what was held out, of the model and of simple predictors.
     pub held_out: Option<HeldOut>,
+    /// Errors of the inverse on what was fitted, while the output moves, in the input's unit; `None`
+    /// without an inverse.
+    pub inverse_errors: Option<Errors>,
     /// Whether it is good enough: headings and sentences.
     pub verdict: Vec<(String, String)>,
     /// What there is to know about the fit.
@@ -66,6 +76,8 @@ pub struct FitView {
     pub input: String,
     /// The output, with its unit.
     pub output: String,
+    /// The number of samples that it took for outliers.
+    pub outliers: usize,
     /// Whether standard errors are known.
     pub confidence: bool,
 }
@@ -85,6 +97,7 @@ impl Fitted {
             nrmse_percent: fit.map_or(0.0, |fit| fit.nrmse_percent),
             max_abs: fit.map_or(0.0, |fit| fit.max_abs),
             held_out: self.held_out.clone(),
+            inverse_errors: self.inverse,
             advice: self.advice.clone(),
             verdict: self.verdict.clone(),
             inverse: model.inverse().is_ok(),
@@ -92,6 +105,7 @@ impl Fitted {
             load: model.load.as_ref().map(hysteron::LoadDependence::range),
             input: shown(&model.input),
             output: shown(&model.output),
+            outliers: fit.map_or(0, |fit| fit.outliers.len()),
             confidence: fit.is_some_and(|fit| fit.confidence.is_some()),
         }
     }

@@ -18,8 +18,8 @@ const WAITING: usize = 8;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Held {
-    /// The files for validation; without any the rows marked; without any a fifth of the branches,
-    /// where there are enough of them.
+    /// The files for validation and the rows marked; without either a fifth of the branches, where
+    /// there are enough of them.
     #[default]
     Usual,
     /// Nothing.
@@ -28,8 +28,13 @@ pub enum Held {
     Words(String),
 }
 
-/// What stands for files that tested a fit.
+/// What stands for files that tested a fit. It comes last in the words of what was held out.
 pub(super) const FILES: &str = "files";
+
+/// The part of the files fitted that these words hold out; empty for none.
+pub(super) fn held_part(words: &str) -> &str {
+    words.strip_suffix(FILES).unwrap_or(words).trim_end()
+}
 
 /// A part that is held out, in words without spaces.
 ///
@@ -91,17 +96,18 @@ impl Session {
         let (hold_out, words) = match (held, marked.is_empty()) {
             (Held::Nothing, _) => (None, String::new()),
             (Held::Words(words), _) => (Some(words.parse::<HoldOut>()?), part(&words)?),
-            (Held::Usual, _) if !others.is_empty() => {
-                validated = of(Purpose::Validate).map(|file| file.id).collect();
-                (Some(HoldOut::Recordings(others)), FILES.into())
-            }
-            (Held::Usual, false) => {
-                let rows = marked.iter().map(|(first, last)| *first..=*last).collect();
+            (Held::Usual, is_unmarked) if !is_unmarked || !others.is_empty() => {
+                let rows = marked.iter().map(|(first, last)| *first..=*last);
+                let rows = (!is_unmarked).then(|| HoldOut::Rows(rows.collect()));
                 let spans = marked.iter().map(|(first, last)| format!("{first}-{last}"));
-                let words = format!("rows:{}", spans.collect::<Vec<_>>().join(","));
-                (Some(HoldOut::Rows(rows)), words)
+                let spans = spans.collect::<Vec<_>>().join(",");
+                let rows_named = rows.iter().map(|_| format!("rows:{spans}"));
+                let files_named = others.first().map(|_| FILES.to_owned());
+                let words: Vec<String> = rows_named.chain(files_named).collect();
+                validated = of(Purpose::Validate).map(|file| file.id).collect();
+                (HoldOut::together(rows, others), words.join(" "))
             }
-            (Held::Usual, true) => {
+            (Held::Usual, _) => {
                 let fifth = HoldOut::Branches(0.2);
                 match recordings.iter().all(|r| r.split(&fifth).is_ok()) {
                     true => (Some(fifth), "branches:20%".into()),
@@ -110,10 +116,8 @@ impl Session {
             }
         };
         let fitted = of(Purpose::Fit).map(|file| file.id).collect();
-        let bytes = recordings.iter().chain(match &hold_out {
-            Some(HoldOut::Recordings(others)) => &others[..],
-            _ => &[],
-        });
+        let others = hold_out.iter().flat_map(HoldOut::recordings);
+        let bytes = recordings.iter().chain(others);
         let bytes = bytes.map(numbers_of).sum();
         let held = self.held(bytes, "the recordings of the fit")?;
         let id = self.next()?;

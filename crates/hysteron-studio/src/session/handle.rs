@@ -139,6 +139,11 @@ impl Session {
             Request::Sample { file, fits, at } => {
                 return Ok(Response::Sample(self.sample(file, &fits, at)?).into());
             }
+            Request::Nearest { view, at } => {
+                let at = at.into();
+                return Ok(Response::Sample(self.nearest(&view, at)?).into());
+            }
+            Request::Worst { fit } => return Ok(Response::Worst(self.worst(fit)?).into()),
             Request::Drive { fit } => {
                 let drive = Drive::new(self.fitted(fit)?)?;
                 let id = self.next()?;

@@ -3,6 +3,7 @@
 use super::fault::{Fault, spelt};
 use super::fitted::Fitted;
 use super::id::Id;
+use super::thinned::fair_ends;
 use hysteron::{
     Advice, Fit, HeldOut, HoldOut, Progress, Recording, Verdict, advice, fit_holding_out,
 };
@@ -148,7 +149,9 @@ impl Job {
                 (model, Some(held_out))
             }
         };
-        let verdict = Verdict::of_fit(&model, &self.recordings)?.lines(spelt);
+        let verdict = Verdict::of_fit(&model, &self.recordings)?;
+        let inverse = verdict.inverse;
+        let verdict = verdict.lines(spelt);
         let verdict = verdict
             .into_iter()
             .map(|(heading, text)| (heading.to_owned(), text));
@@ -160,10 +163,8 @@ impl Job {
             .map(|advice| format!("{advice}: {}", advice.remedy().spelt(spelt)));
         let advice = advice.collect();
         let ends = |of: fn(&Recording) -> &[f64]| {
-            let ranges = self.recordings.iter().map(|r| hysteron::range(of(r)));
-            ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |all, one| {
-                (all.0.min(one.0), all.1.max(one.1))
-            })
+            let values = self.recordings.iter().flat_map(of).copied();
+            fair_ends(values).map_or((0.0, 0.0), |ends| (ends.low, ends.high))
         };
         let time = self.recordings.iter().find_map(|r| r.time.as_deref());
         Ok(Fitted {
@@ -177,9 +178,12 @@ impl Job {
             validated: self.validated,
             model: Arc::new(model),
             held_out,
+            inverse,
             advice,
             verdict,
             courses: BTreeMap::new(),
+            bands: BTreeMap::new(),
+            held: BTreeMap::new(),
             reached: None,
         })
     }

@@ -2,10 +2,12 @@
 
 use super::fault::Fault;
 use super::id::Id;
+use super::layers::Layers;
+use super::parts::Parts;
+use super::seen::Seen;
 use super::state::{MOST, Session};
-use super::thinned::{Shape, histogram, rows, thinned, when};
+use super::thinned::{Ends, fair_ends, histogram, when};
 use hysteron::{Recording, Start, forward};
-use hysteron_report::decimate::Point;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -46,6 +48,12 @@ pub struct View {
     /// The file before its preparation too, where it is prepared.
     #[serde(default)]
     pub raw: bool,
+    /// The fit whose outliers and held-out samples are drawn, too.
+    #[serde(default)]
+    pub of: Option<Id>,
+    /// Its band as well.
+    #[serde(default)]
+    pub band: bool,
     /// Width and height of the picture in pixels.
     pub pixels: (u32, u32),
 }
@@ -63,7 +71,7 @@ pub struct Area {
 impl Area {
     /// Whether the loop is inside at a sample, or on the way from or to it, so that lines go to
     /// the edge.
-    fn shows(&self, recording: &Recording, n: usize) -> bool {
+    pub(super) fn shows(&self, recording: &Recording, n: usize) -> bool {
         if self.input.is_none() && self.output.is_none() {
             return true;
         }
@@ -91,12 +99,15 @@ pub struct Curves {
     pub y: String,
     /// The lines.
     pub lines: Vec<Line>,
+    /// What the axes show, as far as the lines say it: a few samples far away are left out.
+    pub ends: [Option<Ends>; 2],
     /// Samples in the window and the area.
     pub samples: usize,
     /// The time of the first and of the last of them.
     pub span: Option<(f64, f64)>,
-    /// The spans of the time marked for validation.
-    pub marked: Vec<(f64, f64)>,
+    /// What is drawn besides them.
+    #[serde(flatten)]
+    pub layers: Layers,
 }
 
 /// A line. A gap has `None` in both.
@@ -138,14 +149,14 @@ impl Session {
     }
 
     pub(super) fn curves(&mut self, view: &View) -> Result<Curves, Fault> {
-        let recording = self.file(view.file)?.recording()?.clone();
-        let marked = self.file(view.file)?.marked.clone();
+        let parts = self.file(view.file)?.parts()?.clone();
         few(&view.fits)?;
         let mut courses = Vec::new();
         for &fit in &view.fits {
             courses.push((fit, self.course(fit, view.file)?));
         }
-        let rows = rows(&recording, view.window);
+        let seen = Seen::new(&parts, view);
+        let recording = seen.recording;
         let (input, output) = (
             recording.input_quantity.to_column(),
             recording.output_quantity.to_column(),
@@ -154,35 +165,6 @@ impl Session {
             Some(_) => "time [s]".to_owned(),
             None => "sample".to_owned(),
         };
-        let shown: Vec<bool> = rows
-            .clone()
-            .map(|n| view.area.shows(&recording, n))
-            .collect();
-        let first = rows.start;
-        // What is not a number breaks a line: no history goes on from one recording to the next.
-        let begins: Vec<usize> = self.file(view.file)?.parts()?.begins().skip(1).collect();
-        let seen = |n: usize, value: f64| if shown[n - first] { value } else { f64::NAN };
-        let broken = |n: usize, point: Point| {
-            let gap = begins.binary_search(&n).is_ok().then_some([f64::NAN; 2]);
-            gap.into_iter().chain([point])
-        };
-        let over_time = |of: &dyn Fn(usize) -> f64| {
-            let points = rows
-                .clone()
-                .flat_map(|n| broken(n, [when(&recording, n), seen(n, of(n))]));
-            thinned(points, view.pixels, Shape::OverTime)
-        };
-        let over_input = |of: &dyn Fn(usize) -> f64| {
-            let points = rows
-                .clone()
-                .flat_map(|n| broken(n, [recording.input[n], seen(n, of(n))]));
-            let shape = match view.picture {
-                Picture::ResidualsOverInput => Shape::Dots,
-                _ => Shape::Loop,
-            };
-            thinned(points, view.pixels, shape)
-        };
-        let kept = || rows.clone().filter(|n| shown[n - first]);
         let measured = |n: usize| recording.output[n];
         let line = |fit, (x, y)| Line {
             fit,
@@ -192,26 +174,49 @@ impl Session {
         };
         let mut lines = Vec::new();
         if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
-            lines.extend(before(&raw.shown, view));
+            lines.extend(before(raw, view));
         }
         let residual = |course: &Arc<Vec<f64>>, n: usize| course[n] - recording.output[n];
         match view.picture {
-            Picture::Input => lines.push(line(None, over_time(&|n| recording.input[n]))),
-            Picture::Output => lines.push(line(None, over_time(&measured))),
-            Picture::Loop => lines.push(line(None, over_input(&measured))),
+            Picture::Input => lines.push(line(None, seen.over_time(|n| recording.input[n]))),
+            Picture::Output => lines.push(line(None, seen.over_time(measured))),
+            Picture::Loop => lines.push(line(None, seen.over_input(measured))),
             Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => {}
         }
         for (fit, course) in &courses {
             let points = match view.picture {
                 Picture::Input => continue,
-                Picture::Output => over_time(&|n| course[n]),
-                Picture::Loop => over_input(&|n| course[n]),
-                Picture::Residuals => over_time(&|n| residual(course, n)),
-                Picture::ResidualsOverInput => over_input(&|n| residual(course, n)),
-                Picture::Histogram => histogram(kept().map(|n| residual(course, n))),
+                Picture::Output => seen.over_time(|n| course[n]),
+                Picture::Loop => seen.over_input(|n| course[n]),
+                Picture::Residuals => seen.over_time(|n| residual(course, n)),
+                Picture::ResidualsOverInput => seen.over_input(|n| residual(course, n)),
+                Picture::Histogram => histogram(seen.kept().map(|n| residual(course, n))),
             };
             lines.push(line(Some(*fit), points));
         }
+        let fair = |of: &dyn Fn(usize) -> f64| fair_ends(seen.kept().map(of));
+        let input_ends = || fair(&|n| recording.input[n]);
+        let of_courses = |of: &dyn Fn(&Arc<Vec<f64>>, usize) -> f64| {
+            let each = courses.iter();
+            each.filter_map(|(_, course)| fair(&|n| of(course, n)))
+                .reduce(Ends::with)
+        };
+        let up = match view.picture {
+            Picture::Input => input_ends(),
+            Picture::Output | Picture::Loop => {
+                let modelled = of_courses(&|course, n| course[n]);
+                [fair(&measured), modelled]
+                    .into_iter()
+                    .flatten()
+                    .reduce(Ends::with)
+            }
+            Picture::Residuals | Picture::ResidualsOverInput => of_courses(&residual),
+            Picture::Histogram => None,
+        };
+        let across = match view.picture {
+            Picture::Loop | Picture::ResidualsOverInput => input_ends(),
+            _ => None,
+        };
         // Short, because it stands beside a low picture.
         let difference = match &recording.output_quantity.unit {
             Some(unit) => format!("residual [{unit}]"),
@@ -230,15 +235,13 @@ impl Session {
             x,
             y,
             lines,
-            samples: kept().count(),
-            span: kept().next().map(|n| {
-                let last = kept().next_back().unwrap_or(n);
-                (when(&recording, n), when(&recording, last))
+            ends: [across, up],
+            samples: seen.kept().count(),
+            span: seen.kept().next().map(|n| {
+                let last = seen.kept().next_back().unwrap_or(n);
+                (when(recording, n), when(recording, last))
             }),
-            marked: marked
-                .iter()
-                .map(|(a, b)| (when(&recording, a - 1), when(&recording, b - 1)))
-                .collect(),
+            layers: self.layers(view, &seen)?,
         })
     }
 }
@@ -255,24 +258,13 @@ pub(super) fn few(fits: &[Id]) -> Result<(), Fault> {
 }
 
 /// The line of a recording before its preparation, in the pictures that have one.
-fn before(raw: &Recording, view: &View) -> Option<Line> {
-    let rows = rows(raw, view.window).filter(|n| view.area.shows(raw, *n));
+fn before(raw: &Parts, view: &View) -> Option<Line> {
+    let seen = Seen::new(raw, view);
+    let raw = seen.recording;
     let (x, y) = match view.picture {
-        Picture::Input => thinned(
-            rows.map(|n| [when(raw, n), raw.input[n]]),
-            view.pixels,
-            Shape::OverTime,
-        ),
-        Picture::Output => thinned(
-            rows.map(|n| [when(raw, n), raw.output[n]]),
-            view.pixels,
-            Shape::OverTime,
-        ),
-        Picture::Loop => thinned(
-            rows.map(|n| [raw.input[n], raw.output[n]]),
-            view.pixels,
-            Shape::Loop,
-        ),
+        Picture::Input => seen.over_time(|n| raw.input[n]),
+        Picture::Output => seen.over_time(|n| raw.output[n]),
+        Picture::Loop => seen.over_input(|n| raw.output[n]),
         Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => return None,
     };
     Some(Line {

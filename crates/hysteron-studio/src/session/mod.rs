@@ -3,11 +3,13 @@
 //! `request` defines both, `handle` leads from one to the other, `fault` is what is wrong. `state` is
 //! what the session keeps. `opened` is a file, `parts` its recordings, `prepare` their preparation,
 //! `design` the experiment that is missing. `fitting` asks for a fit, `job` is its work, `fitted` what
-//! it found; `carried` has these as bytes. `look` and `plane` make the pictures, from what `thinned`
-//! leaves. `drive` is a model moved by hand, `take_home` what can be taken away, `commands` the same
-//! work as text, `saved` the session as a file.
+//! it found; `carried` has these as bytes. `look` and `plane` make the pictures, with the lines of
+//! `seen` from what `thinned` leaves; `layers` is drawn besides them, and `pick` points at a sample.
+//! `drive` is a model moved by hand, `take_home` what can be taken away, with `c_archive`; `commands`
+//! is the same work as text, `saved` the session as a file.
 
 mod argument;
+mod c_archive;
 mod carried;
 mod commands;
 mod design;
@@ -19,13 +21,16 @@ mod fitting;
 mod handle;
 mod id;
 mod job;
+mod layers;
 mod look;
 mod opened;
 mod parts;
+mod pick;
 mod plane;
 mod prepare;
 mod request;
 mod saved;
+mod seen;
 mod state;
 mod take_home;
 mod thinned;
@@ -40,11 +45,14 @@ pub use fitting::Held;
 pub use handle::Answer;
 pub use id::Id;
 pub use job::{Finished, Job, JobView};
+pub use layers::Layers;
 pub use look::{Area, Curves, Line, Picture, View};
 pub use opened::{Part, Purpose, RepairView};
+pub use pick::WorstView;
 pub use plane::{PlaneKind, PlaneView, SampleView};
 pub use prepare::Steps;
 pub use request::{Overview, Request, Response, Told};
 pub use state::Session;
 pub use take_home::{Download, Take};
+pub use thinned::Ends;
 pub use wish::Wish;

@@ -60,9 +60,19 @@ pub struct SampleView {
 impl Session {
     /// The sample nearest to a time.
     pub(super) fn sample(&mut self, file: Id, fits: &[Id], at: f64) -> Result<SampleView, Fault> {
+        let n = nearest(self.file(file)?.recording()?, at);
+        self.sample_at(file, fits, n)
+    }
+
+    /// The sample `n`, counted from 0.
+    pub(super) fn sample_at(
+        &mut self,
+        file: Id,
+        fits: &[Id],
+        n: usize,
+    ) -> Result<SampleView, Fault> {
         let recording = self.file(file)?.recording()?.clone();
         few(fits)?;
-        let n = nearest(&recording, at);
         let mut modelled = Vec::new();
         for &fit in fits {
             modelled.push((fit, self.course(fit, file)?[n]));

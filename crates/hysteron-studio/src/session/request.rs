@@ -10,6 +10,7 @@ use super::id::Id;
 use super::job::JobView;
 use super::look::{Curves, View};
 use super::opened::{Part, Purpose};
+use super::pick::WorstView;
 use super::plane::{PlaneKind, PlaneView, SampleView};
 use super::prepare::Steps;
 use super::take_home::{Download, Take};
@@ -115,6 +116,18 @@ pub enum Request {
         /// Its time, or without one its number from 1.
         at: f64,
     },
+    /// The sample of a picture nearest to a point of it.
+    Nearest {
+        /// What is shown.
+        view: View,
+        /// The point, in the units of the axes.
+        at: (f64, f64),
+    },
+    /// The sample with the largest residual of a fit.
+    Worst {
+        /// The fit.
+        fit: Id,
+    },
     /// Starts to drive a model by hand.
     Drive {
         /// The fit.
@@ -138,6 +151,8 @@ impl Request {
                 | Self::Curves(_)
                 | Self::Plane { .. }
                 | Self::Sample { .. }
+                | Self::Nearest { .. }
+                | Self::Worst { .. }
                 | Self::Design(_)
                 | Self::Pull(_)
                 | Self::Take(_)
@@ -173,6 +188,8 @@ pub enum Response {
     Plane(PlaneView),
     /// A sample.
     Sample(SampleView),
+    /// The sample with the largest residual.
+    Worst(WorstView),
     /// A model that is driven.
     Driven(DriveView),
     /// A profile.

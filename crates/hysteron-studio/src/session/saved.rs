@@ -2,7 +2,7 @@
 
 use super::fault::Fault;
 use super::fitted::Fitted;
-use super::fitting::{FILES, part};
+use super::fitting::{FILES, held_part, part};
 use super::id::{Id, LAST};
 use super::job::build;
 use super::opened::{Opened, Part, Purpose, plain_name};
@@ -11,7 +11,7 @@ use super::state::{MOST, Session};
 use base64::Engine;
 use base64::display::Base64Display;
 use base64::engine::general_purpose::STANDARD;
-use hysteron::{Budget, HeldOut, Model};
+use hysteron::{Budget, Errors, HeldOut, Model};
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
@@ -109,6 +109,8 @@ pub(super) struct SavedFit {
     hold_out: String,
     advice: Vec<String>,
     #[serde(default)]
+    inverse: Option<Errors>,
+    #[serde(default)]
     verdict: Vec<(String, String)>,
     input: (f64, f64),
     output: (f64, f64),
@@ -125,6 +127,7 @@ impl SavedFit {
             options: fit.options.clone(),
             hold_out: fit.words.clone(),
             advice: fit.advice.clone(),
+            inverse: fit.inverse,
             verdict: fit.verdict.clone(),
             input: fit.input,
             output: fit.output,
@@ -136,9 +139,10 @@ impl SavedFit {
     /// The fit, each of whose words is one that the session itself could have written.
     pub(super) fn fitted(self) -> Result<Fitted, Fault> {
         build(&self.options)?;
-        let words = match self.hold_out.as_str() {
-            "" | FILES => self.hold_out,
-            words => part(words)?,
+        let words = match held_part(&self.hold_out) {
+            "" if matches!(self.hold_out.as_str(), "" | FILES) => self.hold_out,
+            words if words == self.hold_out => part(words)?,
+            words => format!("{} {FILES}", part(words)?),
         };
         for ids in [&self.files, &self.validated] {
             if ids.iter().collect::<BTreeSet<_>>().len() < ids.len() {
@@ -155,12 +159,15 @@ impl SavedFit {
             validated: self.validated,
             options: self.options,
             words,
+            inverse: self.inverse,
             advice: self.advice,
             verdict: self.verdict,
             input: self.input,
             output: self.output,
             dt: self.dt,
             courses: BTreeMap::new(),
+            bands: BTreeMap::new(),
+            held: BTreeMap::new(),
             reached: None,
         })
     }

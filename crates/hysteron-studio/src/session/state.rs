@@ -151,6 +151,9 @@ impl Session {
     pub(super) fn forget_courses(&mut self, file: Id) {
         for fit in &mut self.fits {
             fit.courses.remove(&file);
+            fit.bands.remove(&file);
+            // Rows are counted through all files.
+            fit.held.clear();
             fit.reached = None;
         }
     }

@@ -1,16 +1,16 @@
 //! What can be taken home: the model, code, a report, the numbers of a picture, the same work as
 //! commands, the session.
 
+use super::c_archive;
 use super::commands;
 use super::fault::Fault;
 use super::id::Id;
 use super::look::View;
-use super::parts::Parts;
 use super::state::Session;
 use super::thinned::rows;
 use super::wish::Wish;
 use base64::Engine;
-use hysteron::{TableWriter, evaluate};
+use hysteron::{Recording, TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
 use hysteron_report::{Made, Report, Shown};
 use serde::{Deserialize, Serialize, Serializer};
@@ -27,7 +27,7 @@ pub enum Take {
         /// The fit.
         fit: Id,
     },
-    /// C99 for a microcontroller, as an archive.
+    /// C99 for a microcontroller, as an archive with a program that shows its use.
     C {
         /// The fit.
         fit: Id,
@@ -173,10 +173,17 @@ impl Session {
             drive: None,
         };
         let (made, texts) = hysteron_export::c_texts(&fitted.model, &options, &sampling)?;
+        let mut files: Vec<(String, String)> = made
+            .files
+            .iter()
+            .map(|file| file.display().to_string())
+            .zip(texts)
+            .collect();
+        files.extend(c_archive::beside(&fitted.model, &made, &files));
         let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
-        for (file, text) in made.files.iter().zip(texts) {
+        for (file, text) in files {
             let stored = zip::write::SimpleFileOptions::default();
-            zip.start_file(format!("model-c/{}", file.display()), stored)
+            zip.start_file(format!("model-c/{file}"), stored)
                 .and_then(|()| Ok(zip.write_all(text.as_bytes())?))
                 .map_err(|error| Fault::defect(&error.to_string()))?;
         }
@@ -214,12 +221,12 @@ impl Session {
             .iter()
             .map(|recording| model.behind_body(recording));
         let behind = behind.map(|recording| recording.map(Cow::into_owned));
-        let seen = Parts::new(behind.collect::<hysteron::Result<_>>()?)?;
+        let seen: Vec<Recording> = behind.collect::<hysteron::Result<_>>()?;
         let report = Report {
             title: &title,
             shown: Shown::Evaluation {
                 model,
-                recording: &seen.shown,
+                recordings: &seen,
                 evaluation: &evaluation,
             },
             made: Made::default(),

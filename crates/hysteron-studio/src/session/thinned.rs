@@ -2,9 +2,14 @@
 
 use hysteron::Recording;
 use hysteron_report::decimate::{self, Point};
+use serde::Serialize;
 
 /// Bars of a histogram.
 const BARS: usize = 60;
+
+/// Of fewer values, none is taken for far from the others.
+const FEW: usize = 20;
+const MANY: usize = 50_000;
 
 /// The time of a sample, or its number from 1.
 pub(super) fn when(recording: &Recording, n: usize) -> f64 {
@@ -85,13 +90,58 @@ pub(super) fn thinned(
     (x, y)
 }
 
-/// How often values occur: the middles of bars, and the share of each in percent.
+/// The ends of a scale.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Ends {
+    /// The lowest value on it.
+    pub low: f64,
+    /// The highest value on it.
+    pub high: f64,
+    /// Whether values lie beyond.
+    pub beyond: bool,
+}
+
+impl Ends {
+    /// The ends of both scales.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            beyond: self.beyond || other.beyond,
+        }
+    }
+}
+
+/// The ends of a scale that a few values far from all others do not set; `None` for no values.
+pub(super) fn fair_ends(values: impl Iterator<Item = f64>) -> Option<Ends> {
+    let values: Vec<f64> = values.collect();
+    let (low, high) = hysteron::range(&values);
+    if values.len() < FEW {
+        let beyond = false;
+        return (low <= high).then_some(Ends { low, high, beyond });
+    }
+    // Some of many say as well where most lie.
+    let each = values.len().div_ceil(MANY);
+    let mut values: Vec<f64> = values.iter().step_by(each).copied().collect();
+    // As many may lie beyond at each end.
+    let few = (values.len() / 200).max(1);
+    let last = values.len() - 1;
+    let mut nth = |n: usize| *values.select_nth_unstable_by(n, f64::total_cmp).1;
+    let inner = (nth(few), nth(last - few));
+    let way = inner.1 - inner.0;
+    let (is_low, is_high) = (low < inner.0 - way, high > inner.1 + way);
+    Some(Ends {
+        low: if is_low { inner.0 } else { low },
+        high: if is_high { inner.1 } else { high },
+        beyond: is_low || is_high,
+    })
+}
+
+/// How often values occur: the middles of bars, and the share of each in percent. The outermost bars
+/// count what is beyond them.
 pub(super) fn histogram(values: impl Iterator<Item = f64> + Clone) -> Points {
-    let ends = values
-        .clone()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, value| {
-            (ends.0.min(value), ends.1.max(value))
-        });
+    let ends = fair_ends(values.clone());
+    let ends = ends.map_or((0.0, 0.0), |ends| (ends.low, ends.high));
     let width = ((ends.1 - ends.0) / BARS as f64).max(f64::MIN_POSITIVE);
     let mut counts = [0_u32; BARS];
     let mut all = 0.0;

@@ -49,7 +49,6 @@ fn whole_way(way: Way, name: &str, text: &str, pictures: &str) {
         &tab,
         "document.querySelectorAll('#plot-plane .heatmaplayer image').length > 0",
     );
-    browser.wait(&tab, "document.querySelector('#plot-drive .scatterlayer')");
 
     // A zoom over time is followed by the loop.
     let points = "document.querySelector('#plot-loop').data[0].x.length";
@@ -61,6 +60,8 @@ fn whole_way(way: Way, name: &str, text: &str, pictures: &str) {
     browser.value(&tab, "document.querySelector('[data-key=all]').click()");
 
     // Drive: the input to its middle, then the output a tenth of its way back.
+    open_task(&mut browser, &tab, "drive");
+    browser.wait(&tab, "document.querySelector('#plot-drive .scatterlayer')");
     let slide = |id: &str, share: f64| {
         format!(
             "(() => {{ const s = document.querySelector('#{id}');
@@ -131,7 +132,7 @@ fn a_recording_with_time_goes_the_whole_way(way: Way) {
 }
 
 /// Loops of a play in a recording as the demo writes it.
-fn play() -> String {
+pub fn play() -> String {
     let mut text = "time [s],temperature [degC],displacement [mm],simulated\n".to_owned();
     let mut y = 20.0_f64;
     for n in 0..1500 {
@@ -211,7 +212,7 @@ fn a_fit_is_cancelled_and_the_page_goes_on(way: Way) {
         browser.wait(&tab, &format!("{buttons}.length === {left}"));
     }
     assert_eq!(
-        browser.value(&tab, "document.querySelectorAll('#fits tr').length"),
+        browser.value(&tab, "document.querySelectorAll('#fits article').length"),
         0
     );
     assert_eq!(
@@ -230,6 +231,16 @@ fn a_fit_is_cancelled_and_the_page_goes_on(way: Way) {
     );
     fit(&mut browser, &tab);
     studio.end();
+}
+
+/// Opens a task beside the pictures.
+pub fn open_task(browser: &mut Chromium, tab: &Tab, name: &str) {
+    let button = format!("document.querySelector('[data-task={name}]')");
+    browser.value(tab, &format!("{button}.click()"));
+    browser.wait(
+        tab,
+        &format!("{button}.ariaExpanded === 'true' && !document.querySelector('#task').hidden"),
+    );
 }
 
 fn fit(browser: &mut Chromium, tab: &Tab) {
@@ -535,13 +546,16 @@ fn two_pages_show_the_same_and_a_fit_is_cancelled() {
     for tab in [&one, &two] {
         browser.wait(tab, "!document.querySelector('#jobs button')");
         assert_eq!(
-            browser.value(tab, "document.querySelectorAll('#fits tr').length"),
+            browser.value(tab, "document.querySelectorAll('#fits article').length"),
             0
         );
     }
     studio.end();
     // The server is gone: the page says so.
-    browser.value(&one, "document.querySelector('[data-key^=mend]').click()");
+    browser.value(
+        &one,
+        "document.querySelector('#files [title=Close]').click()",
+    );
     browser.wait(
         &one,
         "document.querySelector('#fault').textContent.includes('does not answer')",

@@ -2,6 +2,7 @@
 //! studio that starts again.
 #![cfg(feature = "server")]
 
+use crate::browser::open_task;
 use crate::chromium::{Chromium, Tab, browser, keep};
 use crate::common::Studio;
 use crate::place::{EMPTY, Way, both_ways};
@@ -30,7 +31,6 @@ fn fit(browser: &mut Chromium, tab: &Tab) {
     browser.value(tab, "document.querySelector('#begin').click()");
     browser.wait(tab, "document.querySelector('#fits .badge')");
     browser.wait(tab, "document.body.dataset.shown === '1'");
-    browser.wait(tab, "document.querySelector('#plot-drive .scatterlayer')");
 }
 
 fn every_view_answers_the_hand(way: Way) {
@@ -109,6 +109,8 @@ fn every_view_answers_the_hand(way: Way) {
     }
 
     // Drive: a drag in the picture, a path drawn, a path of outputs by number.
+    open_task(&mut browser, &tab, "drive");
+    browser.wait(&tab, "document.querySelector('#plot-drive .scatterlayer')");
     let status = "document.querySelector('#drive-status').textContent";
     let before = browser.value(&tab, "document.querySelector('#value-input').textContent");
     let way = browser.points(
@@ -152,6 +154,7 @@ fn every_view_answers_the_hand(way: Way) {
     );
 
     // Design: the profile, the planes before and with it, and the file.
+    open_task(&mut browser, &tab, "design");
     browser.value(&tab, "document.querySelector('#design-begin').click()");
     browser.wait(
         &tab,

@@ -17,10 +17,12 @@ mod place;
 #[path = "../../../hysteron/tests/common/mod.rs"]
 mod recordings;
 
+mod accessibility;
 mod browser;
 mod browser_views;
 mod carried;
 mod hostile_sessions;
+mod layers;
 mod server;
 mod session;
 mod views;

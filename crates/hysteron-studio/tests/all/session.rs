@@ -210,15 +210,32 @@ fn files_and_rows_for_validation_test_a_fit() {
     let fits = overview(&mut session).fits;
     assert_eq!(
         (fits[0].hold_out.as_str(), fits[1].hold_out.as_str()),
-        ("rows:1-50,401-600", "files")
+        ("rows:1-50,401-600", "rows:1-50,401-600 files")
     );
+    // Rows that are marked count although another file is for validation.
     assert_eq!(fits[0].held_out.as_ref().unwrap().model.samples, 250);
-    assert_eq!(fits[1].held_out.as_ref().unwrap().model.samples, 600);
-    let command = taken(&mut session, json!({"what": "command", "fit": fits[1].id}));
-    assert!(
-        String::from_utf8(command)
-            .unwrap()
-            .contains("--hold-out b.csv")
+    assert_eq!(fits[1].held_out.as_ref().unwrap().model.samples, 850);
+    for (what, said) in [
+        (
+            "command",
+            "--hold-out rows:1-50,401-600 \\\n    --hold-out b.csv",
+        ),
+        ("python", "hold_out=[\"rows:1-50,401-600\", *tests]"),
+        (
+            "rust",
+            "HoldOut::Both(Box::new(\"rows:1-50,401-600\".parse()?), vec![",
+        ),
+    ] {
+        let text = taken(&mut session, json!({"what": what, "fit": fits[1].id}));
+        let text = String::from_utf8(text).unwrap();
+        assert!(text.contains(said), "{text}");
+    }
+    // A session that was saved keeps both.
+    let saved = taken(&mut session, json!({"what": "session"}));
+    let mut again = Session::from_file(&saved, 1 << 28).unwrap();
+    assert_eq!(
+        overview(&mut again).fits[1].hold_out,
+        "rows:1-50,401-600 files"
     );
 }
 

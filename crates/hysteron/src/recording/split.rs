@@ -36,6 +36,50 @@ pub enum HoldOut {
     Rows(Vec<RangeInclusive<usize>>),
     /// Other recordings, as a whole.
     Recordings(Vec<Recording>),
+    /// A part of the recordings fitted, and other recordings as a whole: see [`HoldOut::together`].
+    Both(Box<HoldOut>, Vec<Recording>),
+}
+
+impl HoldOut {
+    /// A part of the recordings fitted together with other recordings; `None` for neither.
+    ///
+    /// ```
+    /// use hysteron::{HoldOut, Recording};
+    /// let other = Recording::new(vec![0.0, 1.0, 0.0], vec![0.0, 2.0, 1.0])?;
+    /// let what = HoldOut::together(Some("20%".parse()?), vec![other]);
+    /// assert!(matches!(what, Some(HoldOut::Both(..))));
+    /// assert_eq!(HoldOut::together(None, Vec::new()), None);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn together(part: Option<Self>, recordings: Vec<Recording>) -> Option<Self> {
+        match (part, recordings.is_empty()) {
+            (None, true) => None,
+            (None, false) => Some(Self::Recordings(recordings)),
+            (Some(part), true) => Some(part),
+            (Some(part), false) => Some(Self::Both(part.into(), recordings)),
+        }
+    }
+
+    /// What is held out of the recordings fitted; `None` for nothing of them.
+    #[must_use]
+    pub fn part(&self) -> Option<&Self> {
+        match self {
+            Self::Branches(_) | Self::Rows(_) => Some(self),
+            Self::Recordings(_) => None,
+            Self::Both(part, _) => part.part(),
+        }
+    }
+
+    /// The other recordings that are held out.
+    #[must_use]
+    pub fn recordings(&self) -> Vec<&Recording> {
+        match self {
+            Self::Branches(_) | Self::Rows(_) => Vec::new(),
+            Self::Recordings(all) => all.iter().collect(),
+            Self::Both(part, all) => part.recordings().into_iter().chain(all).collect(),
+        }
+    }
 }
 
 impl FromStr for HoldOut {
@@ -86,8 +130,8 @@ pub struct Split {
 }
 
 impl Recording {
-    /// Parts the recording. No output that is held out is in the training part. Where other
-    /// recordings are held out, all of this one is.
+    /// Parts the recording. No output that is held out is in the training part. Where only other
+    /// recordings are held out, all of this one is there.
     ///
     /// A branch is held out without the turning point at its end, because the next branch begins
     /// there. So the operators remember the same with and without that branch: its input is
@@ -114,6 +158,7 @@ impl Recording {
         match what {
             HoldOut::Branches(share) => self.split_branches(*share),
             HoldOut::Rows(rows) => Ok(self.parted(marked(rows, self.len())?)),
+            HoldOut::Both(part, _) => self.split(part),
             HoldOut::Recordings(_) => Ok(Split {
                 training: vec![self.clone()],
                 held_out: vec![false; self.len()],
@@ -210,7 +255,7 @@ impl Recording {
 /// Parts each recording as [`Recording::split`] does. Rows are counted through all of them, and may
 /// hold a whole recording out.
 pub(crate) fn split_each(recordings: &[Recording], what: &HoldOut) -> Result<Vec<Split>> {
-    let HoldOut::Rows(rows) = what else {
+    let Some(HoldOut::Rows(rows)) = what.part() else {
         return recordings.iter().map(|one| one.split(what)).collect();
     };
     recordings.iter().try_for_each(Recording::check)?;

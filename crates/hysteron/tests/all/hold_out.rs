@@ -1,7 +1,8 @@
 //! What is held out takes no part in a fit, and is judged beside simple rivals.
 
 use hysteron::{
-    Auto, Fit, HoldOut, Model, Operator, Plane, Recording, Sign, Start, fit_holding_out, held_out,
+    Auto, Fit, HeldOut, HoldOut, Model, Operator, Plane, Recording, Sign, Start, fit_holding_out,
+    held_out,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -242,4 +243,17 @@ fn rows_of_several_recordings_are_counted_through_all() {
     let (as_file, told) = fit_holding_out(&fit, &three[..2], &other).unwrap();
     assert_eq!(as_rows.weights(), as_file.weights());
     assert_eq!(tested.model.rmse, told.model.rmse);
+    // A part and a recording together: the model is that of the part alone, the errors are over both.
+    let part = || HoldOut::Branches(0.2);
+    let both = HoldOut::together(Some(part()), three[2..].to_vec()).unwrap();
+    let (with_both, of_both) = fit_holding_out(&fit, &three[..2], &both).unwrap();
+    let (with_part, of_part) = fit_holding_out(&fit, &three[..2], &part()).unwrap();
+    assert_eq!(with_both.weights(), with_part.weights());
+    let of_file = held_out(&with_part, &three[..2], &three[2..]).unwrap();
+    let samples = |report: &HeldOut| report.model.samples as f64;
+    assert_eq!(samples(&of_both), samples(&of_part) + samples(&of_file));
+    let squares = |report: &HeldOut| samples(report) * report.model.rmse.powi(2);
+    let sum = squares(&of_part) + squares(&of_file);
+    // Sums in another order differ by rounding.
+    assert!((squares(&of_both) / sum - 1.0).abs() < 1e-9);
 }

@@ -3,8 +3,11 @@
 use crate::evaluation::view::View;
 use crate::figure::Figure;
 use crate::number::difference;
-use crate::panels::{Heading, WIDTH};
+use crate::panels::Heading;
 use crate::residuals::{CLASSES, Residuals};
+
+/// Two of them stand side by side.
+const WIDTH: f64 = 600.0;
 
 pub(crate) fn over_input<'a>() -> Figure<View<'a>> {
     Figure {

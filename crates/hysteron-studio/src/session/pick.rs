@@ -1,0 +1,113 @@
+//! The sample that is pointed at, and the one with the largest residual.
+
+use super::fault::Fault;
+use super::id::Id;
+use super::look::{Picture, View};
+use super::plane::SampleView;
+use super::seen::Seen;
+use super::state::Session;
+use super::thinned::when;
+use hysteron::Recording;
+use hysteron_report::decimate::Point;
+use serde::Serialize;
+
+/// The sample with the largest residual of a fit.
+#[derive(Debug, Clone, Serialize)]
+pub struct WorstView {
+    /// The file that it is in.
+    pub file: Id,
+    /// The sample.
+    pub sample: SampleView,
+}
+
+impl Picture {
+    /// A sample in this picture, as measured or as modelled; `None` where it has no place there.
+    /// In a histogram only the residual counts.
+    pub(super) fn point(
+        self,
+        recording: &Recording,
+        course: Option<&[f64]>,
+        n: usize,
+    ) -> Option<Point> {
+        let (input, output) = (recording.input[n], recording.output[n]);
+        let residual = || Some(course?[n] - output);
+        Some(match self {
+            Self::Input => [when(recording, n), input],
+            Self::Output => [when(recording, n), output],
+            Self::Loop => [input, output],
+            Self::Residuals => [when(recording, n), residual()?],
+            Self::ResidualsOverInput => [input, residual()?],
+            Self::Histogram => [residual()?, 0.0],
+        })
+    }
+}
+
+impl Session {
+    /// The sample of a picture nearest to a point of it.
+    pub(super) fn nearest(&mut self, view: &View, at: Point) -> Result<SampleView, Fault> {
+        let mut courses = Vec::new();
+        for fit in &view.fits {
+            courses.push(self.course(*fit, view.file)?);
+        }
+        let parts = self.file(view.file)?.parts()?.clone();
+        let seen = Seen::new(&parts, view);
+        let recording = seen.recording;
+        let is_histogram = view.picture == Picture::Histogram;
+        let at = if is_histogram { [at[0], 0.0] } else { at };
+        let mut found = (f64::INFINITY, 0);
+        let lines = std::iter::once(None).chain(courses.iter().map(Some));
+        for course in lines {
+            let course = course.map(|course| &course[..]);
+            let points = || {
+                let each = seen.kept();
+                each.filter_map(|n| Some((n, view.picture.point(recording, course, n)?)))
+            };
+            // In a loop the model's line can be pointed at as well.
+            let moved = |(n, [x, y]): (usize, Point)| match (view.picture, course) {
+                (Picture::Loop | Picture::Output, Some(course)) => (n, [x, course[n]]),
+                _ => (n, [x, y]),
+            };
+            let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+            for (_, point) in points() {
+                for (ends, value) in ends.iter_mut().zip(point) {
+                    *ends = [ends[0].min(value), ends[1].max(value)];
+                }
+            }
+            let way = ends.map(|[low, high]| f64::max(high - low, f64::MIN_POSITIVE));
+            for (n, point) in points().map(moved) {
+                let [x, y] = [0, 1].map(|axis| (point[axis] - at[axis]) / way[axis]);
+                let distance = x.hypot(y);
+                if distance < found.0 {
+                    found = (distance, n);
+                }
+            }
+        }
+        self.sample_at(view.file, &view.fits, found.1)
+    }
+
+    /// The sample with the largest residual of a fit, in the files that it was fitted to and tested
+    /// on.
+    pub(super) fn worst(&mut self, fit: Id) -> Result<WorstView, Fault> {
+        let fitted = self.fitted(fit)?;
+        let files = fitted.files.iter().chain(&fitted.validated).copied();
+        let files: Vec<Id> = files.collect();
+        let mut worst: Option<(f64, Id, usize)> = None;
+        for file in files {
+            let Ok(recording) = self.file(file).and_then(|file| file.recording().cloned()) else {
+                continue;
+            };
+            let course = self.course(fit, file)?;
+            let residuals = course.iter().zip(&recording.output).enumerate();
+            for (n, (modelled, measured)) in residuals {
+                let residual = (modelled - measured).abs();
+                if worst.is_none_or(|(largest, ..)| residual > largest) {
+                    worst = Some((residual, file, n));
+                }
+            }
+        }
+        let none = || Fault::missing("no file of this fit is open", "open it again");
+        let (_, file, n) = worst.ok_or_else(none)?;
+        let sample = self.sample_at(file, &[fit], n)?;
+        Ok(WorstView { file, sample })
+    }
+}
