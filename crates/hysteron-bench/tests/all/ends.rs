@@ -1,6 +1,6 @@
 //! Somebody stops a run, or its log cannot be written.
 
-use super::bench::{PID, config, folder, plain};
+use super::bench::{PID, config, folder};
 use super::device::{SAFE, start};
 use hysteron_bench::{End, Options, Stop, run};
 
@@ -53,8 +53,17 @@ fn a_log_that_cannot_be_written_ends_a_run() {
         log: Some(path),
         ..Options::default()
     };
-    let found = plain(&config, &options).unwrap();
-    assert_eq!(reader.join().unwrap(), 11);
+    // The run waits here until the reader has gone: on a busy machine it may be the slower one.
+    let mut reader = Some(reader);
+    let mut count = 0;
+    let mut observe = |_: &hysteron_bench::Seen<'_>| {
+        count += 1;
+        if let Some(reader) = reader.take_if(|_| count == 20) {
+            assert_eq!(reader.join().unwrap(), 11);
+        }
+    };
+    let stop = Stop::default();
+    let found = run(&config, &options, &stop, &mut |_| {}, &mut observe).unwrap();
     let report = served.join().unwrap();
     assert!(matches!(found.end, End::Log(_)), "{}", found.end);
     assert_eq!((report.drive, report.quit), (SAFE, true));
