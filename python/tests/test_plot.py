@@ -1,6 +1,7 @@
 """The figures hold what they say: the right curves, and labels with units. What they cannot show they refuse by name."""
 
 import inspect
+import re
 import subprocess
 import sys
 
@@ -164,3 +165,17 @@ def test_bad_input_is_named(error, message, draw, model, recording):
     with pytest.raises(error, match=message):
         draw(model, recording)
     assert not any(ax.lines for number in plt.get_fignums() for ax in plt.figure(number).axes), "nothing is drawn"
+
+
+def test_a_notebook_shows_one_figure_at_its_width():
+    input = 50 - 30 * np.cos(np.linspace(0, 20, 300))
+    model = pyhysteron.Model(np.full(15, 0.2), (20, 80), input="temperature [degC]", output="lift [mm]")
+    recording = pyhysteron.Recording(input, model.simulate(input), input_name="temperature [degC]", output_name="lift [mm]")
+    for picture, axes in [(model.plot(), 2), (recording.plot(), 3), (model.plot(recording), 3), (recording.plot(model), 3)]:
+        assert len(picture.figure.axes) >= axes
+        head = picture._repr_html_().split(">")[0]
+        assert "width: 100%" in head and "viewBox" in head and not re.search(r'\s(width|height)="', head)
+    # Measured and modelled, over time.
+    assert len(recording.plot(model).figure.axes[1].get_lines()) == 2
+    with pytest.raises(TypeError, match="model"):
+        recording.plot(3)

@@ -58,8 +58,8 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     print(&said.join("\n"))
 }
 
-/// The recording after the steps that were asked for: none without `--prepare` or a step's own option. The report goes to
-/// standard error, behind `which` recording it is.
+/// The recording after the steps that were asked for: none without `--prepare` or a step's own
+/// option. The report goes to standard error, behind `which` recording it is.
 pub(crate) fn asked_for(
     recording: Recording,
     args: &args::PrepareFirst,

@@ -97,8 +97,9 @@ impl Report<'_> {
     /// # Errors
     ///
     /// Before anything is written, where the parts do not fit together: [`ReportError::Length`],
-    /// [`ReportError::NoRecording`], [`ReportError::NoModel`], [`ReportError::NoRun`], [`ReportError::EmptyRun`],
-    /// [`ReportError::RunLength`], [`ReportError::Snapshot`] and [`ReportError::Row`].
+    /// [`ReportError::NoRecording`], [`ReportError::NoModel`], [`ReportError::NoRun`],
+    /// [`ReportError::EmptyRun`], [`ReportError::RunLength`], [`ReportError::Snapshot`] and
+    /// [`ReportError::Row`].
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
     pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
         let mut folder = AtomicFolder::create(dir, None)?;

@@ -39,6 +39,7 @@ except ImportError as _missing:
     raise ImportError("pyhysteron.plot needs matplotlib: pip install 'pyhysteron[plot]'") from _missing
 
 from ._loops import loops, major_loops
+from ._notebook import Picture as Picture
 from ._operators import operators, structure
 from ._plane import excitation, grid, plane
 from ._series import band, dead_band, over_time

@@ -119,8 +119,8 @@ pub(crate) struct FitHow {
     pub(crate) prior: Option<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:
     /// `branches:20%` or just `20%` (a share up to 33 %, spread over the recording), `rows:A-B,C-D`
-    /// (counted from 1, after the preparation, through all that is fitted), or another recording. It
-    /// may be given several times: one part, and any number of files
+    /// (counted from 1, after the preparation, through all that is fitted), or another recording.
+    /// It may be given several times: one part, and any number of files
     #[arg(long, value_name = "WHAT|FILE", value_parser = parse_hold_out)]
     pub(crate) hold_out: Vec<HoldOut>,
     /// Lowest and highest level [default: so that the active range is that of the input]
