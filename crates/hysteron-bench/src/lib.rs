@@ -41,3 +41,4 @@ pub use end::{End, Stop};
 pub use error::{Error, Result};
 pub use session::run;
 pub use summary::{Options, Seen, Summary};
+pub use tune::{Tuned, tune};

@@ -10,7 +10,9 @@ const DRIVES: [f64; 2] = [0.25, 0.75];
 /// Samples within which the relay test has to come to its end.
 const PATIENCE: usize = 20_000;
 /// Factors on the gains that are tried: the largest with which the loop is calm is the margin.
-const FACTORS: [f64; 9] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
+/// Those of a slow body, which a relay hardly moves within a sample, have to shrink a thousandfold.
+const LARGEST: f64 = 16.0;
+const HALVINGS: i32 = 14;
 /// The gain margin that is kept at least (Åström & Hägglund 2006: 2 to 5).
 const MARGIN: f64 = 2.0;
 /// Samples of a simulated run.
@@ -21,9 +23,11 @@ const RESTLESS: f64 = 3.0;
 
 /// Gains, and the factor that they may grow by before the simulated loop is restless.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Tuned {
-    pub(crate) gains: Gains,
-    pub(crate) margin: f64,
+pub struct Tuned {
+    /// The gains.
+    pub gains: Gains,
+    /// The factor.
+    pub margin: f64,
 }
 
 /// The model in the place of the plant, each drive seen `delay` samples after it was given.
@@ -59,12 +63,15 @@ impl<'a> Plant<'a> {
 /// 1984) gives the first (Tyreus & Luyben 1992). Then the whole loop, with the inverse where it has
 /// one and the noise of the fit, runs up and down through the model's range, and the gains are
 /// lowered until they may double.
-pub(crate) fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
+///
+/// # Errors
+/// [`Error::Control`] for a model that does not follow a relay, or whose loop is never calm.
+pub fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
     let first = relay(model, scheme)?;
     let run = |gains: Option<Gains>| travel(model, scheme, gains, inverse);
     let (low, high) = scheme.drives;
     let calm = RESTLESS * run(None)?.max(high - low);
-    for factor in FACTORS {
+    for factor in (0..=HALVINGS).map(|n| LARGEST * 0.5f64.powi(n)) {
         let scaled = |factor: f64| Gains {
             gain: first.gain * factor,
             ..first

@@ -2,21 +2,42 @@
 
 use crate::args;
 use crate::terminal::{Result, print};
-use hysteron_export::{COptions, CSampling, Fmu, FmuOptions};
+use hysteron::control::{Gains, Scheme};
+use hysteron::{Model, Remedy, Setting};
+use hysteron_export::{ArduinoOptions, CControl, COptions, CSampling, Fmu, FmuOptions};
 use serde_json::json;
+
+/// Without a reading for so long, or for so many samples, a loop on the target goes safe; and with
+/// one that stands still. As of `run`.
+const LOST_S: f64 = 0.5;
+const STUCK_S: f64 = 1.0;
+const FEW: f64 = 5.0;
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
     match args {
         args::Export::C(args) => c(args),
+        args::Export::Arduino(args) => arduino(args),
         args::Export::Fmu(args) => fmu(args),
     }
 }
 
 fn c(args: &args::ExportC) -> Result<()> {
     let model = model(&args.model, args.load)?;
-    let sampling = CSampling {
-        dt: args.dt,
-        drive: args.drive_range,
+    let control = match (args.controller, args.dt) {
+        (true, Some(dt)) => {
+            let plane = model.plane();
+            let range = args.drive_range.or(model.drive);
+            let drives = range.unwrap_or((plane.bottom(), plane.max()));
+            Some(control(&model, dt, drives, args.gains)?)
+        }
+        _ => None,
+    };
+    let sampling = match control {
+        None => CSampling {
+            dt: args.dt,
+            drive: args.drive_range,
+        },
+        Some(_) => sampling(&model, args.dt, args.drive_range),
     };
     let options = COptions {
         real: args.real.into(),
@@ -26,7 +47,12 @@ fn c(args: &args::ExportC) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let export = hysteron_export::c_sampled(&model, target, &options, &sampling)?;
+    let export = match &control {
+        None => hysteron_export::c_sampled(&model, target, &options, &sampling)?,
+        Some(control) => {
+            hysteron_export::c_controlled(&model, target, &options, &sampling, control)?
+        }
+    };
     let (memory, worst) = (export.memory, export.worst_case);
     if args.json.json {
         let object = json!({
@@ -45,7 +71,9 @@ fn c(args: &args::ExportC) -> Result<()> {
                 "mixed": memory.mixed,
                 "turns": memory.turns,
                 "adaptation": memory.adaptation,
+                "controller": memory.controller,
             },
+            "control": control.as_ref().map(loop_json),
             "worst_case": {
                 "turning_points_passed": worst.turning_points,
                 "step_loop": worst.step,
@@ -74,6 +102,12 @@ fn c(args: &args::ExportC) -> Result<()> {
     if let Some(bytes) = memory.adaptation {
         lines.push(format!("{bytes} bytes more for a model that learns"));
     }
+    if let (Some(bytes), Some(control)) = (memory.controller, &control) {
+        lines.push(format!(
+            "{bytes} bytes more for a controller, and a second state; {}",
+            loop_text(control)
+        ));
+    }
     if !export.stages.is_empty() {
         lines.push(format!("stages: {}", export.stages.join(", ")));
     }
@@ -82,6 +116,122 @@ fn c(args: &args::ExportC) -> Result<()> {
     }
     lines.extend(hysteron_export::delay_note(&model, args.dt));
     print(&lines.join("\n"))
+}
+
+fn arduino(args: &args::ExportArduino) -> Result<()> {
+    let model = model(&args.model, args.load)?;
+    // The sketches have the share of time for which current flows as the drive.
+    let drives = args.drive_range.unwrap_or((0.0, 1.0));
+    let control = control(&model, args.dt, drives, args.gains)?;
+    let options = ArduinoOptions {
+        name: args.name.as_deref(),
+        source: &args.model,
+        board: args.board.into(),
+    };
+    let inputs = [args.model.as_path()];
+    let target = args.force.target(&args.out, &inputs);
+    let sampling = sampling(&model, Some(args.dt), args.drive_range);
+    let made = hysteron_export::arduino(&model, target, &options, &sampling, &control)?;
+    let (export, memory) = (made.export, made.memory);
+    if args.json.json {
+        let object = json!({
+            "files": export.files,
+            "name": export.name,
+            "levels": export.levels,
+            "stages": export.stages,
+            "board": options.board.name(),
+            "model_bytes": { "flash": memory.model_flash, "ram": memory.model_ram },
+            "sketch_bytes": { "flash": memory.flash, "ram": memory.ram },
+            "board_bytes": { "flash": options.board.flash(), "ram": options.board.ram() },
+            "follows": memory.follows,
+            "control": loop_json(&control),
+        });
+        return print(&object.to_string());
+    }
+    let files = export.files.iter().map(|file| file.display().to_string());
+    let mut lines: Vec<String> = files.collect();
+    let of = |most: Option<usize>| most.map_or(String::new(), |most| format!(" of {most}"));
+    lines.push(format!(
+        "{}: the model takes {} bytes of flash and {} of RAM; with the sketch at most {}{} and {}{}",
+        options.board.name(),
+        memory.model_flash,
+        memory.model_ram,
+        memory.flash,
+        of(options.board.flash()),
+        memory.ram,
+        of(options.board.ram()),
+    ));
+    if !memory.follows {
+        lines.push(
+            "there is no room for a second state: a reading that stands still is believed".into(),
+        );
+    }
+    lines.push(loop_text(&control));
+    lines.extend(hysteron_export::delay_note(&model, Some(args.dt)));
+    print(&lines.join("\n"))
+}
+
+/// A loop around a model, with gains from it where none are given.
+fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> Result<CControl> {
+    let mut scheme = Scheme {
+        tolerance: model.usual_tolerance(),
+        delay: Some(1 + model.delay().at(Some(dt))),
+        ..Scheme::new(dt, drives)
+    };
+    scheme.pid = Some(match gains {
+        Some(gains) => gains,
+        None => {
+            let tuned = hysteron_bench::tune(model, &scheme, true);
+            tuned.map_err(untuned)?.gains
+        }
+    });
+    Ok(CControl {
+        lost_s: LOST_S.max(FEW * dt),
+        stuck_s: STUCK_S.max(FEW * dt),
+        scheme,
+    })
+}
+
+fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
+    let what = format!("no gains come from the model ({error})");
+    let remedy = Remedy::new("give them with {}", [Setting::any("gains")]);
+    hysteron::Error::Export(what).remedied(remedy)
+}
+
+/// The sample time of a model that depends on time, and the limits of one with stages.
+fn sampling(model: &Model, dt: Option<f64>, drive: Option<(f64, f64)>) -> CSampling {
+    CSampling {
+        dt: dt.filter(|_| model.is_timed()),
+        drive: drive.filter(|_| !model.is_plain()),
+    }
+}
+
+fn loop_json(control: &CControl) -> serde_json::Value {
+    json!({
+        "dt": control.scheme.interval_s,
+        "gains": control.scheme.pid,
+        "drive": [control.scheme.drives.0, control.scheme.drives.1],
+        "delay_samples": control.scheme.delay,
+        "tolerance": control.scheme.tolerance,
+        "lost_s": control.lost_s,
+        "stuck_s": control.stuck_s,
+    })
+}
+
+fn loop_text(control: &CControl) -> String {
+    let Scheme {
+        pid,
+        interval_s,
+        drives: (low, high),
+        ..
+    } = &control.scheme;
+    let gains = pid.map_or(String::new(), |gains| {
+        format!(
+            "gain {:.3e}, integral time {:.3e} s, derivative time {:.3e} s, ",
+            gains.gain, gains.integral_s, gains.derivative_s
+        )
+    });
+    format!("PID: {gains}every {interval_s} s, drive {low} to {high}")
 }
 
 fn fmu(args: &args::ExportFmu) -> Result<()> {

@@ -41,7 +41,20 @@
 #endif
 
 /* Layout of hys_model. Models that were exported for another layout do not compile. */
-#define HYS_LAYOUT 2
+#define HYS_LAYOUT 3
+
+/* Tables are the most of a model. An AVR copies constants into its RAM unless they are told to stay
+ * in flash, which it reads with instructions of its own. Tables that are made on the target are in
+ * RAM: programs with weights that learn or depend on the load define HYS_TABLES_IN_RAM for all
+ * files. */
+#if defined(__AVR__) && !defined(HYS_TABLES_IN_RAM)
+#include <avr/pgmspace.h>
+#define HYS_IN_FLASH PROGMEM
+#define HYS_READ(number) pgm_read_float(number)
+#else
+#define HYS_IN_FLASH
+#define HYS_READ(number) (*(number))
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -80,7 +93,7 @@ typedef struct {
 /* A model. Written by `hysteron export c`; do not change it. Levels are in the input's unit, sums
  * and offset in the output's unit. */
 typedef struct {
-    const hys_real *table;  /* Everett table C[p][q], 0 <= q <= p <= K, row by row */
+    const hys_real *table;  /* Everett table C[p][q], 0 <= q <= p <= K, row by row; HYS_READ */
     size_t levels;          /* K */
     hys_real top;           /* K as a number */
     hys_real min, max;      /* lowest and highest level */

@@ -34,8 +34,11 @@
 
 #include "hysteron_mcu.h"
 
-#if HYS_LAYOUT != 2
+#if HYS_LAYOUT != 3
 #error "hysteron_mcu_adapt: export the model again: hysteron_mcu.h is of another version"
+#endif
+#if defined(__AVR__) && !defined(HYS_TABLES_IN_RAM)
+#error "hysteron_mcu_adapt: a model that learns has its table in RAM: define HYS_TABLES_IN_RAM"
 #endif
 
 #ifdef __cplusplus

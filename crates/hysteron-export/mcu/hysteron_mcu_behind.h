@@ -17,10 +17,12 @@ enum { MOST_CREEP = 4 };
 /* From what to what the exact inverse of a ring may alternate, as a part of the range of sums. */
 #define LITTLE ((hys_real)1 / (hys_real)128)
 
-static inline int is_there(const hys_actuator *actuator, unsigned stage)
-{
-    return (actuator->there >> stage & 1u) != 0u;
-}
+/* Whether the code has a stage; those around the axis have the numbers behind these. */
+enum { LOAD = 4, REGISTRATION = 5, SPACING = 6 };
+#define HAS(stage) ((HYS_STAGES >> (stage) & 1u) != 0u)
+
+/* And whether an actuator has it: a macro, so that compilers for size leave out the others too. */
+#define is_there(actuator, stage) (HAS(stage) && ((actuator)->there >> (stage) & 1u) != 0u)
 
 /* The linear piece for x: between knots k and k + 1. Beyond the ends it is the outermost one. */
 static inline size_t piece(const hys_real *knots, size_t count, hys_real x)

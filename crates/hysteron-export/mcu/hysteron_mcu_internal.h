@@ -105,13 +105,13 @@ static inline size_t table_index(size_t p, size_t q)
 static inline hys_real everett(const hys_model *model, split max, split min)
 {
     const hys_real *row = model->table + table_index(max.cell, min.cell);
-    hys_real near = row[0];
-    hys_real far = row[max.cell + 2u];
+    hys_real near = HYS_READ(row);
+    hys_real far = HYS_READ(row + (max.cell + 2u));
     if (max.part > min.part) {
-        hys_real mid = row[max.cell + 1u];
+        hys_real mid = HYS_READ(row + (max.cell + 1u));
         return near + max.part * (mid - near) + min.part * (far - mid);
     } else {
-        hys_real mid = row[1];
+        hys_real mid = HYS_READ(row + 1);
         return near + min.part * (mid - near) + max.part * (far - mid);
     }
 }

@@ -86,7 +86,8 @@ static branch find(const hys_state *state, size_t kind, goal to)
 static hys_real on_row(const hys_model *model, size_t p, split min)
 {
     const hys_real *row = model->table + table_index(p, min.cell);
-    return p > min.cell ? row[0] + min.part * (row[1] - row[0]) : ZERO;
+    hys_real first = HYS_READ(row);
+    return p > min.cell ? first + min.part * (HYS_READ(row + 1) - first) : ZERO;
 }
 
 /* The first x from `from` up at which e(x, min) meets the goal; K if there is none. */
@@ -117,16 +118,16 @@ static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goa
     /* The two linear pieces, u <= v and u >= v, meet on the diagonal of the cell. u is the part of
      * x, v that of min. */
     if (off_diagonal) {
-        knot = near[0] + min.part * (below[1] - near[0]);
+        knot = HYS_READ(near) + min.part * (HYS_READ(below + 1) - HYS_READ(near));
     }
     if (met_rising(to, knot)) {
         /* In a cell on the plane's diagonal this piece is zero and never has the crossing. */
         if (off_diagonal) {
-            slope = below[1] - near[1];
+            slope = HYS_READ(below + 1) - HYS_READ(near + 1);
         }
         u = along(to.value - on_row(model, p, min), slope, min.part);
     } else {
-        u = min.part + along(to.value - knot, below[0] - near[0], ONE - min.part);
+        u = min.part + along(to.value - knot, HYS_READ(below) - HYS_READ(near), ONE - min.part);
     }
     return number(p) + u;
 }
@@ -136,7 +137,8 @@ static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goa
 static hys_real on_column(const hys_model *model, split max, size_t q)
 {
     const hys_real *near = model->table + table_index(max.cell, q);
-    return near[0] + max.part * (near[max.cell + 1u] - near[0]);
+    hys_real first = HYS_READ(near);
+    return first + max.part * (HYS_READ(near + (max.cell + 1u)) - first);
 }
 
 /* The first x from `from` down at which e(max, x) meets the goal; 0 if there is none. */
@@ -165,16 +167,16 @@ static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, g
     below = near + (max.cell + 1u);
     off_diagonal = max.cell > q;
     if (off_diagonal) {
-        knot = near[0] + max.part * (below[1] - near[0]);
+        knot = HYS_READ(near) + max.part * (HYS_READ(below + 1) - HYS_READ(near));
     }
     if (met_rising(to, knot)) {
         /* From v = 1, where the input enters the cell, back to the diagonal. */
         if (off_diagonal) {
-            slope = near[0] - near[1];
+            slope = HYS_READ(near) - HYS_READ(near + 1);
         }
         v = max.part + along(knot - to.value, slope, ONE - max.part);
     } else {
-        v = along(on_column(model, max, q) - to.value, below[0] - below[1], max.part);
+        v = along(on_column(model, max, q) - to.value, HYS_READ(below) - HYS_READ(below + 1), max.part);
     }
     return number(q) + v;
 }

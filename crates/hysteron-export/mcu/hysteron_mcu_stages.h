@@ -31,6 +31,10 @@
 
 #define HYS_MOST_PARTS 8
 
+/* The stages that the code has, a bit for each: all of them, or those of one model where flash is
+ * scarce. */
+#define HYS_STAGES 127u
+
 /* Stages behind the operators: how many there are, numbers that they remember, and factors. */
 #define HYS_BEHIND 4
 #define HYS_BEHIND_MEMORY 8

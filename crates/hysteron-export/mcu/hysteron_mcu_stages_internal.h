@@ -66,7 +66,7 @@ static inline int curves_at(const hys_actuator *actuator, hys_real load, loaded_
     at->shift = ZERO;
     at->gain = ONE;
     at->offset = ZERO;
-    if (loads->numbers == NULL) {
+    if (!HAS(LOAD) || loads->numbers == NULL) {
         return HYS_OK;
     }
     if (!is_finite(load)) {
@@ -168,10 +168,10 @@ static inline hys_real led_to(const hys_actuator *actuator, const loaded_axis *a
                               hys_real temperature)
 {
     const hys_model *model = actuator->operators;
-    const hys_real *corners = actuator->spacing.numbers;
+    const hys_real *corners = HAS(SPACING) ? actuator->spacing.numbers : NULL;
     hys_real effective = at->scale * temperature - at->shift;
     size_t k;
-    if (actuator->knots.numbers != NULL) {
+    if (HAS(REGISTRATION) && actuator->knots.numbers != NULL) {
         effective = registered(actuator, at, rising, 0, effective);
     }
     if (corners == NULL) {
@@ -186,7 +186,7 @@ static inline hys_real seen_at(const hys_actuator *actuator, const loaded_axis *
                                hys_real temperature)
 {
     hys_real least = led_to(actuator, at, 1, temperature);
-    if (actuator->falling.numbers == NULL) {
+    if (!HAS(REGISTRATION) || actuator->falling.numbers == NULL) {
         return least;
     }
     return hys_max(least, hys_min(held, led_to(actuator, at, 0, temperature)));

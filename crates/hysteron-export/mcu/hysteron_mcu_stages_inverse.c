@@ -46,7 +46,7 @@ static hys_real leading_to(const hys_actuator *actuator, const loaded_axis *at, 
                            hys_real input)
 {
     const hys_model *model = actuator->operators;
-    const hys_real *corners = actuator->spacing.numbers;
+    const hys_real *corners = HAS(SPACING) ? actuator->spacing.numbers : NULL;
     hys_real effective = input;
     if (corners != NULL) {
         size_t k = 0u, end = model->levels - 1u;
@@ -65,7 +65,7 @@ static hys_real leading_to(const hys_actuator *actuator, const loaded_axis *at, 
             ? corners[k + 1u]
             : corners[k] + (input - from) * ((corners[k + 1u] - corners[k]) / (to - from));
     }
-    if (actuator->knots.numbers != NULL) {
+    if (HAS(REGISTRATION) && actuator->knots.numbers != NULL) {
         effective = registered(actuator, at, rising, 1, effective);
     }
     return (effective + at->shift) / at->scale;
@@ -83,7 +83,7 @@ static hys_real temperature_at(const hys_actuator *actuator, const loaded_axis *
                                const from_here *from, hys_real input)
 {
     hys_real lowest;
-    if (actuator->falling.numbers == NULL || input > from->held) {
+    if (!HAS(REGISTRATION) || actuator->falling.numbers == NULL || input > from->held) {
         return leading_to(actuator, at, 1, input);
     }
     lowest = leading_to(actuator, at, 0, input);
@@ -103,7 +103,7 @@ static hys_real slack_of(const hys_actuator *actuator, const loaded_axis *at, hy
     hys_real effective = at->scale * size + magnitude(at->shift);
     hys_real ends = magnitude(actuator->operators->max) + magnitude(actuator->operators->bottom);
     const hys_list *knots = &actuator->knots;
-    if (knots->numbers != NULL) {
+    if (HAS(REGISTRATION) && knots->numbers != NULL) {
         effective = effective
             + (magnitude(knots->numbers[0]) + magnitude(knots->numbers[knots->count - 1u]));
     }

@@ -2,6 +2,7 @@
 
 mod algorithm;
 mod constants;
+mod control;
 mod learners;
 mod name;
 mod notation;
@@ -13,8 +14,9 @@ mod stages;
 mod text;
 mod written;
 
-use algorithm::{ADAPTATION, ALGORITHM, STAGES};
+use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, STAGES};
 use constants::Constants;
+pub use control::CControl;
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
 use learners::Learners;
 pub use real::CReal;
@@ -109,8 +111,32 @@ pub fn c_sampled<'a>(
     options: &COptions<'_>,
     sampling: &CSampling,
 ) -> Result<CExport> {
-    let target = target.into();
-    let (mut export, texts) = c_texts(model, options, sampling)?;
+    write(target.into(), c_texts(model, options, sampling)?, options)
+}
+
+/// As [`c_sampled`], with a control loop around the model: `hysteron_mcu_control.h`, `.c`, with
+/// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
+/// of [`hysteron::control::Controller`] with the fixed model as its compensator.
+///
+/// # Errors
+/// As [`c_sampled`]; [`Error::Export`] too for a model with a load or without an inverse, and for
+/// settings that the target does not have ([`CControl::scheme`]).
+pub fn c_controlled<'a>(
+    model: &Model,
+    target: impl Into<Destination<'a>>,
+    options: &COptions<'_>,
+    sampling: &CSampling,
+    control: &CControl,
+) -> Result<CExport> {
+    let texts = c_texts_controlled(model, options, sampling, Some(control), false)?;
+    write(target.into(), texts, options)
+}
+
+fn write(
+    target: Destination<'_>,
+    (mut export, texts): (CExport, Vec<String>),
+    options: &COptions<'_>,
+) -> Result<CExport> {
     for file in &mut export.files {
         *file = target.path().join(&*file);
         refuse_other_type(file, options.real)?;
@@ -136,10 +162,24 @@ pub fn c_texts(
     options: &COptions<'_>,
     sampling: &CSampling,
 ) -> Result<(CExport, Vec<String>)> {
+    c_texts_controlled(model, options, sampling, None, false)
+}
+
+/// As [`c_controlled`], in memory; with `alone`, the code of the stages is for this model alone.
+///
+/// # Errors
+/// As [`c_controlled`], but for files.
+pub(crate) fn c_texts_controlled(
+    model: &Model,
+    options: &COptions<'_>,
+    sampling: &CSampling,
+    control: Option<&CControl>,
+    alone: bool,
+) -> Result<(CExport, Vec<String>)> {
     let name = name::choose(options.name, options.source)?;
     match options.real {
-        CReal::Float => texts::<f32>(model, options, name, sampling),
-        CReal::Double => texts::<f64>(model, options, name, sampling),
+        CReal::Float => texts::<f32>(model, options, name, sampling, (control, alone)),
+        CReal::Double => texts::<f64>(model, options, name, sampling, (control, alone)),
     }
 }
 
@@ -148,6 +188,7 @@ fn texts<T: Number>(
     options: &COptions<'_>,
     name: String,
     sampling: &CSampling,
+    (control, alone): (Option<&CControl>, bool),
 ) -> Result<(CExport, Vec<String>)> {
     let constants = Constants::<T>::new(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
@@ -165,6 +206,15 @@ fn texts<T: Number>(
         false => None,
     };
     let learned = learners.as_ref().map(|learners| learners.text(&name));
+    let controlled = match control {
+        None => None,
+        Some(control) => {
+            control::check(control, model, &constants, sampling.dt)?;
+            let staged = constants.stages.is_some();
+            Some(control::text::<T>(control, model, (&name, staged))?)
+        }
+    };
+    let late = control.map(|control| control::late(&control.scheme, model));
     let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
@@ -172,7 +222,11 @@ fn texts<T: Number>(
         (_, Some(_)) => &[&ALGORITHM, &STAGES],
         _ => &[&ALGORITHM],
     };
-    let algorithm = parts.concat();
+    let mut algorithm = parts.concat();
+    if control.is_some() {
+        algorithm.extend(CONTROL);
+        algorithm.extend(constants.stages.iter().flat_map(|_| CONTROL_STAGES));
+    }
     let own = ["h", "c"].map(|end| format!("{name}.{end}"));
     let files = algorithm.iter().map(|(file, _)| *file);
     let files = files.chain(own.iter().map(String::as_str));
@@ -188,19 +242,24 @@ fn texts<T: Number>(
             .as_ref()
             .map_or_else(Vec::new, |stages| stages.names()),
         dt: sampling.dt,
-        memory: constants.memory(learns),
+        memory: constants.memory(4, learns, late),
+        avr: constants.memory(2, learns, late),
         worst_case: CWorstCase::new(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
     let (float, wanted) = (CReal::Float.line(), options.real.line());
     let texts = algorithm.iter().map(|(_, text)| {
         let text = text.replace(&float, &wanted);
+        let text = match alone {
+            true => algorithm::with_stages(&text, &export.stages),
+            false => text,
+        };
         format!("/* hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
-    let (source, learned) = (options.source, learned.as_ref());
-    texts.push(text::header(&export, &constants, model, source, learned));
-    texts.push(text::source(&export, &constants, learned));
+    let (source, beside) = (options.source, (learned.as_ref(), controlled.as_ref()));
+    texts.push(text::header(&export, &constants, model, source, beside));
+    texts.push(text::source(&export, &constants, beside));
     let sealed = texts.iter().map(|text| seal::sealed(text)).collect();
     Ok((export, sealed))
 }

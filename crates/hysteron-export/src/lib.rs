@@ -1,14 +1,20 @@
-//! Exports models: as C99 for a microcontroller ([`c()`]), as an FMU for Simulink and other tools
+//! Exports models: as C99 for a microcontroller ([`c()`]), as a library for Arduino ([`arduino()`]), as
+//! an FMU for Simulink and other tools
 //! ([`fmu()`]).
 #![forbid(unsafe_code)]
 
+mod arduino;
 mod c;
 mod device;
 mod fmu;
 
 use hysteron::Model;
 
-pub use c::{CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_sampled, c_texts};
+pub use arduino::{Arduino, ArduinoOptions, Board, BoardMemory, arduino};
+pub use c::{
+    CControl, CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_controlled, c_sampled,
+    c_texts,
+};
 pub use fmu::{Fmi, Fmu, FmuOptions, fmu, fmu_bytes};
 
 /// What an export leaves to its caller where the model has a dead time ([`Model::delay`]): the code

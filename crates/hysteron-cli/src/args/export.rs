@@ -1,17 +1,24 @@
 //! Arguments of `hysteron export`.
 
 use super::common::{Force, Json};
-use super::value::parse_limits;
+use super::value::{parse_gains, parse_limits};
 use clap::{Args, Subcommand, ValueEnum};
+use hysteron::control::Gains;
 use std::path::PathBuf;
 
 #[derive(Subcommand)]
 pub(crate) enum Export {
-    /// Portable C99 with the model as constants, for a microcontroller or a PLC
+    /// Portable C99 with the model as constants, for a microcontroller
     #[command(after_help = "Examples:\n\
         \x20 hysteron export c spring.json -o mcu --real float\n\
-        \x20 hysteron export c wire.json -o mcu --dt 0.01 --drive-range 0,100")]
+        \x20 hysteron export c wire.json -o mcu --dt 0.01 --drive-range 0,100\n\
+        \x20 hysteron export c wire.json -o mcu --dt 0.01 --controller")]
     C(ExportC),
+    /// A library with two sketches for the Arduino IDE and PlatformIO
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron export arduino wire.json -o ~/Arduino/libraries/wire\n\
+        \x20 hysteron export arduino wire.json -o wire --board mega --dt 0.02")]
+    Arduino(ExportArduino),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
     #[command(after_help = "Examples:\n\
         \x20 hysteron export fmu spring.json -o sf_MKP.fmu\n\
@@ -55,7 +62,15 @@ pub(crate) struct ExportC {
     /// Also write the code with which the weights adapt on the target
     #[arg(long)]
     pub(crate) adaptation: bool,
-    /// The sample time on the target, for a model that depends on time
+    /// Also write a control loop around the model: its inverse and a PID
+    #[arg(long, requires = "dt", conflicts_with = "adaptation")]
+    pub(crate) controller: bool,
+    /// Gains of the PID: gain, integral time and derivative time in s [default: from the model, by
+    /// simulation]
+    #[arg(long, value_name = "GAIN,S,S", value_parser = parse_gains, allow_hyphen_values = true,
+        requires = "controller")]
+    pub(crate) gains: Option<Gains>,
+    /// The sample time on the target, for a model that depends on time, and for a controller
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) dt: Option<f64>,
     /// Lowest and highest drive of the inverse, for a model with stages [default: for a thermal
@@ -67,6 +82,63 @@ pub(crate) struct ExportC {
     pub(crate) load: Option<f64>,
     #[command(flatten)]
     pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportArduino {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// Folder of the library
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
+    /// Name of the library, and of the model in C [default: that of the model's file]
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// The board that it has to fit
+    #[arg(long, value_enum, default_value_t = Board::Uno)]
+    pub(crate) board: Board,
+    /// The sample time on the board
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.05,
+        allow_hyphen_values = true
+    )]
+    pub(crate) dt: f64,
+    /// Gains of the PID: gain, integral time and derivative time in s [default: from the model, by
+    /// simulation]
+    #[arg(long, value_name = "GAIN,S,S", value_parser = parse_gains, allow_hyphen_values = true)]
+    pub(crate) gains: Option<Gains>,
+    /// Lowest and highest drive [default: those that the model was fitted with]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true)]
+    pub(crate) drive_range: Option<(f64, f64)>,
+    /// Take the model at this load
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub(crate) load: Option<f64>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Board {
+    /// ATmega328P: Uno, Nano, Pro Mini
+    Uno,
+    /// ATmega2560: Mega
+    Mega,
+    /// More memory than any model needs, such as a board of 32 bits
+    Large,
+}
+
+impl From<Board> for hysteron_export::Board {
+    fn from(board: Board) -> Self {
+        match board {
+            Board::Uno => Self::Uno,
+            Board::Mega => Self::Mega,
+            Board::Large => Self::Large,
+        }
+    }
 }
 
 #[derive(Args)]

@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use hysteron::Step;
+use hysteron::control::Gains;
 
 /// What is done or not, without a value.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -352,6 +353,25 @@ pub(super) fn parse_limits(text: &str) -> Result<(f64, f64), String> {
             _ => Err("the first number must not be above the second".into()),
         },
         None => Err("two numbers with a comma between are needed, such as 20,80".into()),
+    }
+}
+
+/// Gain, integral time and derivative time; the last ones may be left out.
+pub(super) fn parse_gains(text: &str) -> Result<Gains, String> {
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(parse_finite).collect();
+    let numbers = numbers?;
+    let at = |n: usize| numbers.get(n).copied().unwrap_or(0.0);
+    let gains = Gains {
+        gain: at(0),
+        integral_s: at(1),
+        derivative_s: at(2),
+    };
+    match numbers.len() {
+        1..=3 => gains
+            .check()
+            .map(|()| gains)
+            .map_err(|error| error.to_string()),
+        _ => Err("a gain and two times in s are needed, such as 0.05,0.5,0".into()),
     }
 }
 

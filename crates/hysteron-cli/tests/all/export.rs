@@ -155,3 +155,60 @@ fn a_model_with_a_thermal_body() {
         serde_json::json!(["lift", "clipped", "temperature"])
     );
 }
+
+#[test]
+fn a_loop_and_a_library_for_arduino() {
+    let folder = models();
+    let gains = "--gains 0.5,0.2";
+    let said = json(
+        folder.path(),
+        &format!("export c spring.json -o loop --controller --dt 0.05 {gains}"),
+    );
+    assert_eq!(said["files"].as_array().unwrap().len(), 8);
+    assert_eq!(said["control"]["gains"]["integral_s"], 0.2);
+    assert!(
+        said["ram_bytes"]["controller"].as_u64().unwrap() > 80,
+        "{said}"
+    );
+    // Without gains they come from the model.
+    let said = json(
+        folder.path(),
+        "export arduino spring.json -o spring --drive-range 20,80",
+    );
+    assert!(
+        said["control"]["gains"]["gain"].as_f64().unwrap() < 0.0,
+        "{said}"
+    );
+    assert!(
+        said["sketch_bytes"]["ram"].as_u64().unwrap() <= 2048,
+        "{said}"
+    );
+    let done = run(
+        folder.path(),
+        &format!("export arduino spring.json -o spring {gains}"),
+    );
+    assert!(
+        text(&done.stdout).contains("of 32256 and"),
+        "{}",
+        text(&done.stdout)
+    );
+    let refusals = [
+        ("export c spring.json -o other --controller", "--dt"),
+        (
+            "export arduino butterfly.json -o other --gains 1",
+            "weights below zero",
+        ),
+        (
+            "export arduino spring.json -o other --gains 1,2,3,4",
+            "0.05,0.5,0",
+        ),
+    ];
+    for (command, words) in refusals {
+        let done = run(folder.path(), command);
+        assert!(
+            !done.status.success() && text(&done.stderr).contains(words),
+            "{command}"
+        );
+        assert!(!folder.path().join("other").exists());
+    }
+}

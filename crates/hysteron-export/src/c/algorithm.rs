@@ -40,6 +40,24 @@ pub(super) const ADAPTATION: [(&str, &str); 5] = [
     ),
 ];
 
+/// The same for a control loop.
+pub(super) const CONTROL: [(&str, &str); 2] = [
+    (
+        "hysteron_mcu_control.h",
+        include_str!("../../mcu/hysteron_mcu_control.h"),
+    ),
+    (
+        "hysteron_mcu_control.c",
+        include_str!("../../mcu/hysteron_mcu_control.c"),
+    ),
+];
+
+/// The same for a control loop around a model with stages.
+pub(super) const CONTROL_STAGES: [(&str, &str); 1] = [(
+    "hysteron_mcu_control_stages.c",
+    include_str!("../../mcu/hysteron_mcu_control_stages.c"),
+)];
+
 /// The same for models with stages.
 pub(super) const STAGES: [(&str, &str); 5] = [
     (
@@ -63,3 +81,36 @@ pub(super) const STAGES: [(&str, &str); 5] = [
         include_str!("../../mcu/hysteron_mcu_stages_internal.h"),
     ),
 ];
+
+/// Stages that the code may go without, by their bits in `HYS_STAGES`.
+const BITS: [&str; 7] = [
+    "curve",
+    "creep",
+    "lag",
+    "ring",
+    "load",
+    "registration",
+    "spacing",
+];
+
+/// A text of the algorithm with the code of these stages alone.
+pub(super) fn with_stages(text: &str, stages: &[&str]) -> String {
+    let all = (1 << BITS.len()) - 1;
+    let bits = BITS.iter().enumerate();
+    let there = bits.filter(|(_, stage)| stages.contains(stage));
+    let mask: u32 = there.map(|(bit, _)| 1 << bit).sum();
+    let line = |mask: u32| format!("#define HYS_STAGES {mask}u");
+    text.replace(&line(all), &line(mask))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_of_the_stages_is_found() {
+        let (_, header) = STAGES[0];
+        let text = with_stages(header, &["body", "lag"]);
+        assert!(text.contains("#define HYS_STAGES 4u\n"), "{text}");
+    }
+}

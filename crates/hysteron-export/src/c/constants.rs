@@ -109,16 +109,25 @@ impl<T: Number> Constants<T> {
     ///
     /// `learns`: for what learns on the target, the bytes of its constants beside the weights, and the
     /// numbers of its memory.
-    pub(super) fn memory(&self, learns: Option<(usize, usize)>) -> CMemory {
-        const WORD: usize = 4;
-        let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
-        let model = aligned(2 * WORD + 10 * T::BYTES + 3);
-        let operators = aligned(4 * WORD + 6 * T::BYTES);
+    /// `word`: the bytes of a pointer and of a size. An AVR, whose have 2, aligns nothing.
+    /// `late`: for a control loop, the drives that are under way.
+    pub(super) fn memory(
+        &self,
+        word: usize,
+        learns: Option<(usize, usize)>,
+        late: Option<usize>,
+    ) -> CMemory {
+        let aligned = |bytes: usize| match word {
+            2 => bytes,
+            _ => bytes.next_multiple_of(T::BYTES),
+        };
+        let model = aligned(2 * word + 10 * T::BYTES + 3);
+        let operators = aligned(4 * word + 6 * T::BYTES);
         // `hys_mixed` and its table.
         let len = table_len(self.core.plane().levels());
         let mixed = match &self.stages {
             Some(staged) if staged.parts.is_some() => {
-                model + aligned(2 * WORD) + (2 + len) * T::BYTES
+                model + aligned(2 * word) + (2 + len) * T::BYTES
             }
             _ => 0,
         };
@@ -129,13 +138,13 @@ impl<T: Number> Constants<T> {
                     let lists = 1 + staged.arrays().count();
                     let core = staged.core();
                     let numbers = 9 + RATE_NUMBERS + core.behind.slopes().count();
-                    aligned(aligned((3 + 2 * lists) * WORD) + numbers * T::BYTES + 3)
+                    aligned(aligned((3 + 2 * lists) * word) + numbers * T::BYTES + 3)
                 } + staged
                     .parts
                     .as_ref()
-                    .map_or(0, |_| aligned(3 * WORD) + 2 * T::BYTES)
+                    .map_or(0, |_| aligned(3 * word) + 2 * T::BYTES)
                     + staged.numbers() * T::BYTES,
-                operators + aligned(3 * WORD) + (STATE_NUMBERS - 1) * T::BYTES + mixed,
+                operators + aligned(3 * word) + (STATE_NUMBERS - 1) * T::BYTES + mixed,
             ),
         };
         let start = match (&self.start, &self.stages) {
@@ -143,24 +152,30 @@ impl<T: Number> Constants<T> {
             // Without stages the input is a constant of its own.
             (Some((points, _)), stages) => points.len() + usize::from(stages.is_none()),
         };
-        let options = 4 * WORD + 11 * T::BYTES;
-        let trial = aligned(4 * T::BYTES + WORD);
-        let gate = aligned(4 * T::BYTES + 2 * WORD);
-        let piece = aligned(7 * T::BYTES + WORD);
-        let run = aligned(19 * T::BYTES + WORD);
+        let options = 4 * word + 11 * T::BYTES;
+        let trial = aligned(4 * T::BYTES + word);
+        let gate = aligned(4 * T::BYTES + 2 * word);
+        let piece = aligned(7 * T::BYTES + word);
+        let run = aligned(19 * T::BYTES + word);
         let trail = aligned(7 * T::BYTES + run + piece + 2);
-        let watch = aligned(2 * trail + 3 * T::BYTES + WORD);
+        let watch = aligned(2 * trail + 3 * T::BYTES + word);
         let own = options + 2 * trial + gate + watch;
-        let adaptive = aligned(model + own + aligned(22 * WORD) + 10 * T::BYTES + 4);
+        let adaptive = aligned(model + own + aligned(22 * word) + 10 * T::BYTES + 4);
         let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {
+            table: table * T::BYTES,
             constants: model
                 + stages
                 + (table + start) * T::BYTES
-                + learns.map_or(0, |(bytes, _)| weights * T::BYTES + bytes),
+                + learns.map_or(0, |(bytes, _)| weights * T::BYTES + bytes)
+                + late.map_or(0, |_| aligned(2 * word + 13 * T::BYTES + 2)),
             state,
             mixed,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
+            controller: late.map(|late| {
+                let numbers = (18 + late) * T::BYTES;
+                aligned(5 * word) + numbers + aligned(2 * word + 8)
+            }),
             adaptation: learns.map(|(_, numbers)| adaptive + numbers * T::BYTES),
         }
     }

@@ -3,7 +3,7 @@
 use super::constants::Constants;
 use super::notation::{array, list};
 use super::real::{Number, unfit};
-use super::text::Learned;
+use super::text::Beside;
 use hysteron::{AdaptOptions, DriftBasis, Learner, Model, Result};
 use hysteron_core::{Adaptation, Method, operator_count, table_index, table_len};
 use std::fmt::Write;
@@ -90,9 +90,10 @@ impl<T: Number> Learners<T> {
     }
 
     /// What stands beside the model `name`.
-    pub(super) fn text(&self, name: &str) -> Learned {
+    pub(super) fn text(&self, name: &str) -> Beside {
         let (sizes, declared) = self.declared(name);
-        Learned {
+        Beside {
+            include: None,
             sizes,
             declared,
             defined: self.defined(name),

@@ -11,8 +11,10 @@ use hysteron_core::{operator_index, table_index, table_len, turn_capacity};
 use std::fmt::Write;
 use std::path::Path;
 
-/// What stands beside a model that learns on the target.
-pub(super) struct Learned {
+/// What stands beside a model, for a learner or for a control loop.
+pub(super) struct Beside {
+    /// One more header.
+    pub(super) include: Option<&'static str>,
     /// Its sizes, as macros.
     pub(super) sizes: String,
     pub(super) declared: String,
@@ -26,7 +28,7 @@ pub(super) fn header<T: Number>(
     constants: &Constants<T>,
     model: &Model,
     source: &Path,
-    learned: Option<&Learned>,
+    (learned, control): (Option<&Beside>, Option<&Beside>),
 ) -> String {
     let CExport { name, levels, .. } = export;
     let shout = name.to_uppercase();
@@ -106,6 +108,12 @@ pub(super) fn header<T: Number>(
         sizes.clone_from(&learned.sizes);
         weights += &learned.declared;
     }
+    if let Some(control) = control {
+        sizes += &control.sizes;
+        weights += &control.declared;
+    }
+    let include = control.and_then(|control| control.include);
+    let include = include.map_or(String::new(), |file| format!("#include \"{file}\"\n"));
     if staged.is_some_and(|staged| staged.parts.is_some()) {
         sizes += &format!("#define {shout}_TABLE {}\n", table_len(*levels));
     }
@@ -127,7 +135,7 @@ pub(super) fn header<T: Number>(
 #define {shout}_H
 
 #include \"{file}\"
-
+{include}
 {checks}
 #define {shout}_LEVELS {levels}
 #define {shout}_TURNS {turns}
@@ -165,7 +173,7 @@ fn check(name: &str, macro_name: &str, header: (&str, &str)) -> String {
 pub(super) fn source<T: Number>(
     export: &CExport,
     constants: &Constants<T>,
-    learned: Option<&Learned>,
+    (learned, control): (Option<&Beside>, Option<&Beside>),
 ) -> String {
     let CExport {
         name, real, levels, ..
@@ -180,9 +188,16 @@ pub(super) fn source<T: Number>(
 typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} \
 ? 1 : -1];
 
-static const hys_real table[] = ",
+{apart}static const hys_real table[] HYS_IN_FLASH = ",
         version = env!("CARGO_PKG_VERSION"),
         bytes = T::BYTES,
+        apart = match export.memory.mixed {
+            0 => String::new(),
+            _ => format!(
+                "#if defined(__AVR__) && !defined(HYS_TABLES_IN_RAM)\n#error \"{name}: its weights \
+                 depend on the load: define HYS_TABLES_IN_RAM\"\n#endif\n\n"
+            ),
+        },
     );
     // One table, or those of the parts.
     let tables = constants.table().chunks(table_len(*levels));
@@ -228,6 +243,9 @@ static const hys_real table[] = ",
         let rows = (1..=*levels).map(|j| &constants.weights[operator_index(1, j)..][..j]);
         let _ = write!(text, "\nconst hys_real {name}_weights[] = {}", array(rows));
         text += &learned.defined;
+    }
+    if let Some(control) = control {
+        text += &control.defined;
     }
     text
 }

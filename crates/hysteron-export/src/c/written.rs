@@ -25,23 +25,29 @@ pub struct CExport {
     pub stages: Vec<&'static str>,
     /// The sample time in seconds that the constants hold for, where the model depends on time.
     pub dt: Option<f64>,
-    /// Bytes.
+    /// Bytes on a 32-bit target with naturally aligned numbers, such as a Cortex-M.
     pub memory: CMemory,
+    /// Bytes on an 8-bit AVR. Its constants are copied to RAM, but for their tables.
+    pub avr: CMemory,
     /// The worst case of one call.
     pub worst_case: CWorstCase,
 }
 
-/// Bytes of a model on a 32-bit target with naturally aligned numbers, such as a Cortex-M.
+/// Bytes of a model on a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CMemory {
     /// The model's constants: flash.
     pub constants: usize,
+    /// Of them, the Everett tables.
+    pub table: usize,
     /// A state: RAM.
     pub state: usize,
     /// Of it, the operators at the present load, where the weights depend on the load.
     pub mixed: usize,
     /// Its turning points: RAM.
     pub turns: usize,
+    /// For a control loop: what it remembers, beside the model's states. RAM.
+    pub controller: Option<usize>,
     /// For a model that learns: the additional memory, without its turning points. RAM.
     pub adaptation: Option<usize>,
 }

@@ -5,7 +5,9 @@
 mod common;
 
 mod adapt;
+mod arduino;
 mod c;
+mod control;
 mod files;
 mod fmu;
 mod page;

@@ -2,8 +2,9 @@
 
 use crate::common::programs::{has, page, run};
 use crate::common::{STRICT, here};
-use hysteron::{FirstOrder, Model};
-use hysteron_export::{COptions, CReal, CSampling, c, c_sampled};
+use hysteron::control::Scheme;
+use hysteron::{FirstOrder, Model, Operator, Plane, Sign};
+use hysteron_export::{CControl, COptions, CReal, CSampling, c, c_controlled, c_sampled};
 use std::process::Command;
 
 #[test]
@@ -92,6 +93,59 @@ fn the_actuator_on_the_page() {
     run(Command::new("cc")
         .args(STRICT)
         .arg("-Wdouble-promotion")
+        .args(sources)
+        .args(["-o", "main"])
+        .current_dir(folder.path()));
+    run(Command::new("./main").current_dir(folder.path()));
+}
+
+/// The loop around it.
+#[test]
+fn the_loop_on_the_page() {
+    if !has("cc") {
+        return;
+    }
+    let page = std::fs::read_to_string(here("../../docs/microcontroller.md")).unwrap();
+    let part = page.split("```c\n").nth(3).unwrap();
+    let part = part.split("```").next().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let plane = Plane::new(20.0, 80.0, 5).unwrap();
+    let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 15], 0.0, Sign::Positive).unwrap();
+    model.thermal = Some(FirstOrder {
+        gain: 100.0,
+        ..FirstOrder::default()
+    });
+    let options = COptions {
+        real: CReal::Float,
+        name: None,
+        source: std::path::Path::new("wire.json"),
+        adaptation: false,
+    };
+    let sampling = CSampling {
+        dt: Some(0.01),
+        drive: None,
+    };
+    let control = CControl {
+        scheme: Scheme::new(0.01, (0.0, 1.0)),
+        lost_s: 0.5,
+        stuck_s: 1.0,
+    };
+    let made = c_controlled(&model, folder.path(), &options, &sampling, &control).unwrap();
+    let program = format!(
+        "#include \"wire.h\"\nstatic hys_real written;\n\
+         static void write_drive(hys_real drive) {{ written = drive; }}\n\
+         int main(void) {{ hys_real reference = 4, reading = 0;\n{part}\
+         return !(written >= 0 && written <= 1); }}\n"
+    );
+    std::fs::write(folder.path().join("main.c"), program).unwrap();
+    let sources = made
+        .files
+        .iter()
+        .filter(|file| file.extension().is_some_and(|end| end == "c"));
+    run(Command::new("cc")
+        .args(STRICT)
+        .arg("-Wdouble-promotion")
+        .arg("main.c")
         .args(sources)
         .args(["-o", "main"])
         .current_dir(folder.path()));

@@ -150,6 +150,15 @@ impl Exported {
         }
     }
 
+    /// Models that were exported in another way.
+    pub fn of(folder: tempfile::TempDir, real: CReal, sources: Vec<PathBuf>) -> Self {
+        Self {
+            folder,
+            real,
+            sources,
+        }
+    }
+
     /// Compiles them with `main`, a file of tests/mcu.
     pub fn compile(&self, cc: &str, flags: &[&str], main: &str) -> PathBuf {
         let program = self

@@ -79,7 +79,8 @@ impl Standstill {
 
     fn should_move(&self, before: Cause, now: Cause) -> bool {
         if let (Some((then, _)), Some((expected, (low, high)))) = (before.expected, now.expected) {
-            return (expected - then).abs() > EXPECTED * (high - low);
+            // Of an output that falls, the range stands the other way round.
+            return (expected - then).abs() > EXPECTED * (high - low).abs();
         }
         let (low, high) = now.drives;
         let moved = now.drive - before.drive;
@@ -155,6 +156,17 @@ mod tests {
                 .is_some_and(|time| (time - 0.4).abs() < 1e-9)
         );
         assert_eq!(still.push(1.1, expected(2.0), 0.1), None);
+    }
+
+    #[test]
+    fn an_output_that_falls_has_the_same_range() {
+        let falls = |output: f64| Cause {
+            expected: Some((output, (10.0, 0.0))),
+            ..drive(0.5)
+        };
+        let mut still = Standstill::default();
+        assert!((0..100).all(|_| still.push(1.0, falls(2.0), 0.1).is_none()));
+        assert!((0..4).any(|_| still.push(1.0, falls(3.0), 0.1).is_some()));
     }
 
     #[test]

@@ -1,0 +1,95 @@
+/* A position that holds, on the board alone: a knob says where, the inverse of the model and a PID
+ * bring the actuator there.
+ *
+ * The slider is read at A0, the knob at A1, and PWM at pin 9 drives the gate of a MOSFET. Set the
+ * numbers below to your parts first. Tools > Serial Plotter shows wanted, position and drive. */
+#include <@name@.h>
+#if defined(__AVR__)
+#include <avr/wdt.h>
+#endif
+
+// ---- Your parts: as in the sketch `device`, which the model was recorded with ----
+const uint8_t SENSOR = A0, KNOB = A1, GATE = 9;
+const float MM_PER_COUNT = 10.0 / 1023;       // of slider and knob
+const float LOWEST = @lowest@, HIGHEST = @highest@; // where the knob may lead: the model's range
+const float MM_LOW = -1, MM_HIGH = 11;        // beyond them the drive goes off
+const float HEAT_S = 5;                       // so many seconds of the drive are averaged ...
+const float HEAT_MOST = 0.8;                  // ... and where the mean comes to this, it goes off
+
+// ---- The model: its inverse, and what follows the drive, each with its memory ----
+@states@
+hys_controller controller;
+hys_real under_way[@NAME@_LATE + 1];
+
+const unsigned long DT_US = @name@_control.dt * 1e6 + 0.5;
+unsigned long due, number;
+unsigned int overruns; // samples that came too late
+float drive, heat;
+bool is_off = false;
+float at = NAN, speed; // the knob, and how far it goes in a sample
+
+void apply(float wanted) {
+  drive = constrain(wanted, 0, 1);
+  analogWrite(GATE, (int)(drive * 255 + 0.5));
+}
+
+/* A position, or NaN where nothing is connected: with a resistor to ground that reads zero. */
+float read(uint8_t pin) {
+  unsigned int sum = 0;
+  for (uint8_t n = 0; n < 16; n++) sum += analogRead(pin); // the mean has less noise
+  return sum > 16 * 2 ? sum / 16.0 * MM_PER_COUNT : NAN;
+}
+
+/* Follows the knob without its noise, which the inverse would answer with large drives. */
+void follow(float knob) {
+  if (isnan(knob) || isnan(at)) at = knob, speed = 0;
+  at += speed;
+  const float off = knob - at;
+  at += 0.3 * off;
+  speed += 0.05 * off;
+}
+
+void setup() {
+  pinMode(GATE, OUTPUT);
+  apply(0);
+  Serial.begin(115200);
+@start@
+  is_off |= hys_controller_start(&controller, &@name@_control, @wanted@, @followed@, under_way,
+                                 @NAME@_LATE + 1) != HYS_OK;
+  is_off |= hys_controller_go_on_from(&controller, 0) != HYS_OK;
+  due = micros();
+#if defined(__AVR__)
+  wdt_enable(WDTO_1S); // a sketch that hangs starts again, with the drive off
+#endif
+}
+
+void loop() {
+#if defined(__AVR__)
+  wdt_reset();
+#endif
+  if (micros() - due < DT_US) return;
+  due += DT_US;
+  if (micros() - due >= DT_US) overruns++;
+
+  const float mm = read(SENSOR);
+  follow(read(KNOB));
+  const float wanted = isnan(at) ? LOWEST : constrain(at, LOWEST, HIGHEST);
+  const float ahead = isnan(at) ? LOWEST : constrain(at + speed, LOWEST, HIGHEST);
+  hys_action action;
+  const int code = hys_controller_step(&controller, wanted, ahead, HYS_HOLD, mm, &action);
+  if (code != HYS_OK) is_off = true;
+
+  // What keeps the wire whole. Off is off, until the board is started again.
+  heat += (drive - heat) * DT_US * 1e-6 / HEAT_S;
+  if (heat > HEAT_MOST || mm < MM_LOW || mm > MM_HIGH) is_off = true;
+  if (action.status & HYS_SAFE) is_off = true; // no reading, or one that stands still
+  apply(is_off ? 0 : action.drive);
+
+  if (++number % 5 == 0) {
+    Serial.print(F("wanted:")), Serial.print(wanted, 3);
+    Serial.print(F(" position:")), Serial.print(mm, 3);
+    Serial.print(F(" drive:")), Serial.print(drive, 3);
+    Serial.print(F(" off:")), Serial.print(is_off);
+    Serial.print(F(" overruns:")), Serial.println(overruns);
+  }
+}

@@ -1,0 +1,97 @@
+//! A library for the Arduino IDE and PlatformIO.
+
+mod board;
+mod texts;
+
+use crate::c::{CControl, CExport, COptions, CReal, CSampling, c_texts_controlled};
+pub use board::{Board, BoardMemory};
+use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
+use std::path::{Path, PathBuf};
+
+/// How to write a model as a library for Arduino.
+#[derive(Debug, Clone, Copy)]
+pub struct ArduinoOptions<'a> {
+    /// The library's name, and the model's in C; by default that of `source`, as a C identifier.
+    pub name: Option<&'a str>,
+    /// The file that the model comes from, named in a comment.
+    pub source: &'a Path,
+    /// What it has to fit.
+    pub board: Board,
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arduino {
+    /// The C in `src`. Its files are those of the library.
+    pub export: CExport,
+    /// What the sketch `standalone` needs on an AVR.
+    pub memory: BoardMemory,
+}
+
+/// Writes a library into the folder `target`: the C of [`crate::c_controlled`] in `float`, a sketch
+/// by which `hysteron run` drives the board (`device`), and one that controls on the board alone
+/// (`standalone`). On an AVR the tables of the model stay in flash.
+///
+/// What fits the board's memory is decided by arithmetic, before anything is written. Where the
+/// model does not fit twice, the sketch does without the state that follows the drive.
+///
+/// Files of an earlier export that were not edited since are replaced, all together or not at all.
+///
+/// ```
+/// use hysteron::control::{Gains, Scheme};
+/// use hysteron::{Model, Operator, Plane, Sign};
+/// use hysteron_export::{ArduinoOptions, Board, CControl, CSampling, arduino};
+/// let plane = Plane::new(0.0, 1.0, 20)?;
+/// let model = Model::new(Operator::Mkp, plane, vec![0.05; 210], 0.0, Sign::Positive)?;
+/// let gains = Gains { gain: 0.02, integral_s: 0.5, derivative_s: 0.0 };
+/// let scheme = Scheme { pid: Some(gains), ..Scheme::new(0.05, (0.0, 1.0)) };
+/// let control = CControl { scheme, lost_s: 0.5, stuck_s: 1.0 };
+/// let options = ArduinoOptions {
+///     name: None,
+///     source: "wire.json".as_ref(),
+///     board: Board::Uno,
+/// };
+/// let folder = tempfile::tempdir()?;
+/// let made = arduino(&model, folder.path(), &options, &CSampling::default(), &control)?;
+/// assert!(made.memory.ram <= Board::Uno.ram().unwrap());
+/// assert!(folder.path().join("examples/standalone/standalone.ino").exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`crate::c_controlled`]; [`Error::Export`] for a model that does not fit the board.
+pub fn arduino<'a>(
+    model: &Model,
+    target: impl Into<Destination<'a>>,
+    options: &ArduinoOptions<'_>,
+    sampling: &CSampling,
+    control: &CControl,
+) -> Result<Arduino> {
+    let target = target.into();
+    let c = COptions {
+        real: CReal::Float,
+        name: options.name,
+        source: options.source,
+        adaptation: false,
+    };
+    let (mut export, sources) = c_texts_controlled(model, &c, sampling, Some(control), true)?;
+    let memory = BoardMemory::of(&export, options.board).map_err(|what| {
+        let remedy = "fit with less {}, or name another {}";
+        let settings = [Setting::any("levels"), Setting::any("board")];
+        Error::Export(what).remedied(Remedy::new(remedy, settings))
+    })?;
+    let own = texts::files(model, &export, memory.follows);
+    let names = export.files.iter().map(|file| Path::new("src").join(file));
+    let all = names.zip(sources).chain(own);
+    let mut folder = AtomicFolder::create(target, None)?;
+    let mut files = Vec::new();
+    for (name, text) in all {
+        folder.file(&name, |path| {
+            AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(text.as_bytes())
+        })?;
+        files.push(target.path().join(name));
+    }
+    folder.commit()?;
+    export.files = files.into_iter().collect::<Vec<PathBuf>>();
+    Ok(Arduino { export, memory })
+}

@@ -1,0 +1,128 @@
+//! The settings of a control loop around a model.
+
+use super::constants::Constants;
+use super::real::{Number, unfit};
+use super::text::Beside;
+use hysteron::control::Scheme;
+use hysteron::{Error, Model, Policy, Remedy, Result, Setting, Sign};
+use std::fmt::Write;
+
+/// A control loop on the target, around the model that is exported.
+#[derive(Debug, Clone)]
+pub struct CControl {
+    /// Its settings, as of [`hysteron::control::Controller`]. The model that is exported stands in
+    /// the place of the compensator. A filter, a gate and an inner loop are not to be had there.
+    pub scheme: Scheme,
+    /// Time without a reading after which the drive is the safe one, s; 0 for never.
+    pub lost_s: f64,
+    /// The same for a reading that stands still where it has to move.
+    pub stuck_s: f64,
+}
+
+/// Sums of intervals that differ by less than this share are one time, as in the library.
+const ROUNDING: f64 = 1e-9;
+
+/// Refuses what the loop cannot do on the target.
+pub(super) fn check<T: Number>(
+    control: &CControl,
+    model: &Model,
+    constants: &Constants<T>,
+    dt: Option<f64>,
+) -> Result<()> {
+    let CControl { scheme, .. } = control;
+    let refused = |what: &str| Err(Error::Export(what.into()));
+    if model.load.is_some() {
+        let remedy = Remedy::new("export it at one load with {}", [Setting::any("load")]);
+        let what = "the controller has no reading of a load";
+        return Err(Error::Export(what.into()).remedied(remedy));
+    }
+    if constants.rounding.is_none() {
+        let what = "a model with weights below zero has no inverse, which the controller needs";
+        let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
+        return Err(Error::Export(what.into()).remedied(remedy));
+    }
+    if dt.is_some_and(|dt| dt != scheme.interval_s) {
+        return refused("model and controller have different sample times");
+    }
+    if scheme.filter_s > 0.0 || scheme.gate.is_some() || scheme.inner.is_some() {
+        return refused("a filter, a gate and an inner loop are not to be had on the target");
+    }
+    if scheme.commands != scheme.drives || scheme.policy != Policy::Hold {
+        return refused("the commands are the drives on the target, and headings are given there");
+    }
+    // The library's own checks.
+    hysteron::control::Controller::new(Scheme {
+        compensator: None,
+        ..scheme.clone()
+    })?;
+    let times = [control.lost_s, control.stuck_s];
+    match times.iter().all(|time| *time >= 0.0 && time.is_finite()) {
+        true => Ok(()),
+        false => refused("times until the drive is safe must be finite and from zero on"),
+    }
+}
+
+/// Samples by which the output answers a drive too late.
+pub(super) fn late(scheme: &Scheme, model: &Model) -> usize {
+    let next = 1 + model.delay().at(Some(scheme.interval_s));
+    scheme.delay.unwrap_or(next).saturating_sub(1)
+}
+
+pub(super) fn text<T: Number>(
+    control: &CControl,
+    model: &Model,
+    (name, staged): (&str, bool),
+) -> Result<Beside> {
+    let CControl { scheme, .. } = control;
+    let shout = name.to_uppercase();
+    let late = late(scheme, model);
+    let gains = scheme.pid.unwrap_or(hysteron::control::Gains {
+        gain: 0.0,
+        integral_s: 0.0,
+        derivative_s: 0.0,
+    });
+    let (low, high) = scheme.drives;
+    let (off, on) = model.output_range();
+    let numbers = [
+        ("dt", scheme.interval_s),
+        ("gain", gains.gain),
+        ("integral_s", gains.integral_s),
+        ("derivative_s", gains.derivative_s),
+        ("tolerance", scheme.tolerance),
+        ("drive_min", low),
+        ("drive_max", high),
+        ("safe", 0f64.max(low).min(high)),
+        ("slew", scheme.slew.unwrap_or(0.0)),
+        ("range", (on - off).abs()),
+        (
+            "repeats_s",
+            scheme.stuck_s.unwrap_or(0.0) * (1.0 - ROUNDING),
+        ),
+        ("lost_s", control.lost_s),
+        ("stuck_s", control.stuck_s),
+    ];
+    let mut defined = format!(
+        "\nconst hys_control {name}_control = {{\n    .model = &{},\n    .late = {late},\n",
+        match staged {
+            true => "hys_staged_in_loop",
+            false => "hys_plain_in_loop",
+        }
+    );
+    for (field, number) in numbers {
+        let number =
+            T::nearest(number).ok_or_else(|| unfit(&format!("`{field}` of {number:e}")))?;
+        let _ = writeln!(defined, "    .{field} = {},", number.literal());
+    }
+    let _ = write!(
+        defined,
+        "    .feedback = {},\n    .falls = {}\n}};\n",
+        usize::from(scheme.pid.is_some()),
+        usize::from(model.sign() == Sign::Negative),
+    );
+    Ok(Beside {
+        include: Some("hysteron_mcu_control.h"),
+        sizes: format!("#define {shout}_LATE {late}\n"),
+        declared: format!("extern const hys_control {name}_control;\n"),
+        defined,
+    })
+}

@@ -1,0 +1,119 @@
+//! A library for Arduino: what is written, and what is refused before anything is.
+
+use hysteron::control::{Gains, Scheme};
+use hysteron::{Destination, FirstOrder, Model, Operator, Plane, Sign};
+use hysteron_core::operator_count;
+use hysteron_export::{ArduinoOptions, Board, BoardMemory, CControl, CSampling, arduino};
+use std::path::Path;
+
+fn model(levels: usize, body: bool) -> Model {
+    let plane = Plane::new(0.0, 1.0, levels).unwrap();
+    let weights = vec![1.0 / levels as f64; operator_count(levels)];
+    let mut model = Model::new(Operator::Mkp, plane, weights, 1.0, Sign::Positive).unwrap();
+    model.thermal = body.then(FirstOrder::default);
+    model
+}
+
+fn write(model: &Model, folder: &Path, board: Board) -> hysteron::Result<BoardMemory> {
+    let gains = Gains {
+        gain: 0.05,
+        integral_s: 0.5,
+        derivative_s: 0.0,
+    };
+    let control = CControl {
+        scheme: Scheme {
+            pid: Some(gains),
+            ..Scheme::new(0.05, (0.0, 1.0))
+        },
+        lost_s: 0.5,
+        stuck_s: 1.0,
+    };
+    let options = ArduinoOptions {
+        name: None,
+        source: Path::new("my spring.json"),
+        board,
+    };
+    let sampling = CSampling {
+        dt: model.is_timed().then_some(0.05),
+        drive: None,
+    };
+    let target = Destination::keeping_foreign(folder, false);
+    Ok(arduino(model, target, &options, &sampling, &control)?.memory)
+}
+
+#[test]
+fn the_files_are_those_that_the_ide_looks_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("my_spring");
+    write(&model(10, false), &library, Board::Uno).unwrap();
+    let read = |name: &str| std::fs::read_to_string(library.join(name)).unwrap();
+    for file in ["my_spring.c", "hysteron_mcu.c", "hysteron_mcu_control.c"] {
+        assert!(library.join("src").join(file).exists(), "{file}");
+    }
+    // What the specification of Arduino's libraries asks for.
+    let properties = read("library.properties");
+    for field in [
+        "name=my_spring\n",
+        "\nversion=",
+        "\nauthor=",
+        "\nmaintainer=",
+        "\nsentence=",
+        "\nparagraph=",
+        "\ncategory=Device Control\n",
+        "\nurl=http",
+        "\narchitectures=*\n",
+        "\nincludes=my_spring.h\n",
+    ] {
+        assert!(properties.contains(field), "{field}: {properties}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&read("library.json")).unwrap();
+    assert_eq!(
+        (&json["name"], &json["frameworks"]),
+        (&"my_spring".into(), &"arduino".into())
+    );
+    assert!(read("keywords.txt").contains("hys_controller_step\tKEYWORD2\n"));
+    for name in ["device", "standalone"] {
+        let sketch = read(&format!("examples/{name}/{name}.ino"));
+        assert!(!sketch.contains('@'), "{sketch}");
+        assert!(sketch.lines().count() <= 150 && sketch.is_ascii());
+        assert!(sketch.lines().all(|line| line.len() <= 100), "{name}");
+    }
+    // Written again; but a sketch that was edited is kept.
+    write(&model(12, false), &library, Board::Uno).unwrap();
+    let mine = library.join("examples/device/device.ino");
+    std::fs::write(&mine, "mine").unwrap();
+    let error = write(&model(14, false), &library, Board::Uno).unwrap_err();
+    assert!(error.to_string().contains("device.ino"), "{error}");
+    assert_eq!(std::fs::read_to_string(mine).unwrap(), "mine");
+    assert!(read("src/my_spring.h").contains("LEVELS 12"));
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("wire");
+    // A second state where there is room, one where there is not, and then no more.
+    let follows = |levels| {
+        write(&model(levels, false), &library, Board::Uno)
+            .unwrap()
+            .follows
+    };
+    assert!(follows(5) && !follows(20));
+    std::fs::remove_dir_all(&library).unwrap();
+    let error = write(&model(60, false), &library, Board::Uno).unwrap_err();
+    let said = error.to_string();
+    for part in [
+        "K = 60",
+        "of flash",
+        "of RAM",
+        "ATmega328P",
+        "32256 and 2048",
+        "levels",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!library.exists());
+    let mega = write(&model(60, true), &library, Board::Mega).unwrap();
+    assert!(mega.follows && mega.ram <= 8192, "{mega:?}");
+    write(&model(200, true), &library, Board::Large).unwrap();
+}
