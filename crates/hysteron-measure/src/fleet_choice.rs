@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let folder = std::env::temp_dir().join(format!("hysteron-fleet-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     println!(
-        "| Fleet | Choice | Kinds | Pilots | CPU and time of an actuator | with the bootstrap | \
+        "| Fleet | Choice | Kinds | Pilots | Time of an actuator | with the bootstrap | \
          Left out: median | worst | Above {HARM} times its own | By themselves |"
     );
     println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");

@@ -114,7 +114,9 @@ impl Palette {
         let ratios = pilots.zip(&best).map(|(p, best)| self.ratio(*best, p));
         let ratios: Vec<f64> = ratios.collect();
         let kinds = served.iter().filter_map(|&candidate| {
-            let members = best.iter().filter(|best| **best == candidate).count();
+            let members = best.iter().zip(&ratios);
+            let members = members.filter(|(best, r)| **best == candidate && Self::serves(**r));
+            let members = members.count();
             (members > 0).then(|| self.kind(candidate, members))
         });
         let mut kinds: Vec<FleetKind> = kinds.collect();

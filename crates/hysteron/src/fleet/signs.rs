@@ -92,10 +92,9 @@ impl Usual {
 
     /// Whether an actuator with these signs is of the kind. What it does not show is usual.
     pub(super) fn has(&self, signs: &Signs) -> bool {
-        let pairs = signs.values.iter().zip(&self.0);
-        pairs
-            .into_iter()
-            .all(|(value, (low, high))| value.is_nan() || (low..=high).contains(&value))
+        let mut pairs = signs.values.iter().zip(&self.0);
+        let all = pairs.all(|(value, (low, high))| value.is_nan() || (low..=high).contains(&value));
+        all && signs.error.is_finite()
     }
 
     /// The limits of the error, in percent.
