@@ -942,6 +942,7 @@ def fit_fleet(
     dynamics: Literal["auto", "off", "lag", "ring"] = "auto",
     curve: int | Literal['auto', 'off'] = "off",
     bootstrap: int | None = None,
+    choice: Literal["pilots", "each"] = "pilots",
     hold_out: str | None = None,
     thermal: Literal["first-order", True, False] | None = None,
     prior: WeightPrior | None = None,

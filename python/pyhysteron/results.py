@@ -876,6 +876,11 @@ class FleetFitted(_Result):
         Those that are not in the table, and why.
     notes : tuple of str
         What was assumed about the files.
+    choice : str or None
+        What the pilots chose for all, in words; None where each chose for itself.
+    alone : dict of str
+        Those that the choice of the pilots does not serve, so they chose for themselves: their errors on what
+        is left out, in percent of their range, with that choice (None where no fit succeeds) and with their own.
     """
 
     fitted: int
@@ -883,6 +888,8 @@ class FleetFitted(_Result):
     with_warnings: int
     failed: dict[str, str]
     notes: tuple[str, ...]
+    choice: str | None
+    alone: dict[str, tuple[float | None, float]]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

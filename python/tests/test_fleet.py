@@ -57,6 +57,16 @@ def test_each_model_is_that_of_a_fit_alone(table):
     assert list(fleet.read_fleet(table, actuators=["a003"])) == ["a003"]
 
 
+def test_pilots_choose_for_all(parts, tmp_path):
+    options = {**OPTIONS, "start": "auto"}
+    shared = fleet.fit_fleet(parts, tmp_path / "shared.parquet", by="id", **options)
+    assert " pilots chose for all: levels 5," in shared.choice and shared.fitted == 40
+    alone = fleet.fit_fleet(parts, tmp_path / "each.parquet", by="id", choice="each", **options)
+    assert alone.choice is None and alone.alone == {}
+    with pytest.raises(pyhysteron.FitError, match="`some`"):
+        fleet.fit_fleet(parts, tmp_path / "other.parquet", by="id", choice="some", **options)
+
+
 def test_what_is_broken_is_named_and_stops_nothing(tmp_path):
     write(tmp_path / "good.csv", [1])
     (tmp_path / "flat.csv").write_text("x,y\n1,2\n1,3\n")

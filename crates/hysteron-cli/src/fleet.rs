@@ -41,6 +41,7 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
         read: (&how.repair).into(),
         prepare: Some(prepare::steps_of(&how.prepare)),
         hold_out,
+        choice: args.choice.into(),
         input_unit: how.input_unit.clone(),
         output_unit: how.output_unit.clone(),
         ..FleetOptions::new(columns, fit::fit_of(how)?)
@@ -58,6 +59,12 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
     for note in &found.notes {
         say(format_args!("{note}"));
     }
+    if let Some(shared) = &found.shared {
+        say(format_args!("{shared}"));
+    }
+    for alone in &found.alone {
+        say(format_args!("{alone}"));
+    }
     let failed = found.failed.iter();
     let failed: Vec<_> = failed.map(|f| (&f.id, remedy::text_of(&f.error))).collect();
     for (id, reason) in &failed {
@@ -74,6 +81,8 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
                 "with_warnings": found.with_warnings,
                 "failed": failed.collect::<Vec<_>>(),
                 "notes": found.notes,
+                "choice": found.shared,
+                "alone": found.alone,
             });
             print(&object.to_string())?;
         }
@@ -92,11 +101,12 @@ fn summary(args: &args::FleetFit, found: &hysteron::FleetFitted) -> String {
         count => format!(", {count} {words}"),
     };
     format!(
-        "{}: {} actuators{}{}",
+        "{}: {} actuators{}{}{}",
         args.out.display(),
         found.fitted,
         optional(found.resumed, "of an earlier run that was ended"),
         optional(found.with_warnings, "with warnings, which are in the table"),
+        optional(found.alone.len(), "with choices of their own"),
     )
 }
 

@@ -8,6 +8,7 @@ mod coverage;
 mod cycles;
 mod faults;
 mod fit_speed;
+mod fleet_choice;
 mod fleet_prior;
 mod folder;
 mod genuine;
@@ -31,7 +32,7 @@ use std::process::ExitCode;
 /// A program: its name, what it prints, and what runs it with the words behind its name.
 type Program = (&'static str, &'static str, fn(&[String]) -> Result<()>);
 
-const PROGRAMS: [Program; 17] = [
+const PROGRAMS: [Program; 18] = [
     (
         "adaptation",
         "FOLDER: models adapted over recordings",
@@ -61,6 +62,11 @@ const PROGRAMS: [Program; 17] = [
         "fit-speed",
         "time and memory of a fit, beside SciPy",
         fit_speed::run,
+    ),
+    (
+        "fleet-choice",
+        "[COUNT [LEVELS]]: what it costs and gains that a fleet shares its choices",
+        fleet_choice::run,
     ),
     (
         "fleet-prior",

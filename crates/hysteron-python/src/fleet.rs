@@ -7,7 +7,7 @@ use crate::integer::Integer;
 use crate::model::Model;
 use crate::prior::WeightPrior;
 use crate::progress::with_progress;
-use hysteron::{Columns, Destination, FleetOptions, ReadOptions, Repair};
+use hysteron::{Columns, Destination, FleetChoice, FleetOptions, ReadOptions, Repair};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashSet;
@@ -35,6 +35,10 @@ use std::path::{Path, PathBuf};
 ///     The columns of time and load.
 /// levels, range, operator, solver, smooth, ridge, robust, start, sign, offset, load_law, load_degree, spacing, delay, creep, lag, dynamics, curve, bootstrap, thermal, prior
 ///     As for `pyhysteron.fit`.
+/// choice : {'pilots', 'each'}
+///     Who chooses what is left to the data, such as the levels. ``'pilots'``: some actuators, spread
+///     over the data, choose for all. One that their choice does not serve is fitted by itself, and
+///     is named in the result. A fleet of fewer than 24 has no pilots. ``'each'``: each for itself.
 /// hold_out : str, optional
 ///     A part of each recording that takes no part in its fit, as for `pyhysteron.fit`.
 /// repair : bool
@@ -70,9 +74,9 @@ use std::path::{Path, PathBuf};
 /// ['a0', 'a1', 'a2']
 #[pyfunction]
 #[pyo3(signature = (
-    data, target, *, input, output, by=None, time=None, load=None, bootstrap=None, hold_out=None, thermal=None,
-    prior=None, repair=false, force=false, progress=None, **options,
-), text_signature = "(data, target, *, input, output, by=None, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', delay='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, hold_out=None, thermal=None, prior=None, time=None, load=None, repair=False, force=False, progress=None)")]
+    data, target, *, input, output, by=None, time=None, load=None, bootstrap=None, choice=None, hold_out=None,
+    thermal=None, prior=None, repair=false, force=false, progress=None, **options,
+), text_signature = "(data, target, *, input, output, by=None, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='auto', load_degree='auto', spacing='auto', delay='auto', creep='off', lag='off', dynamics='auto', curve='off', bootstrap=None, choice='pilots', hold_out=None, thermal=None, prior=None, time=None, load=None, repair=False, force=False, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit_fleet<'py>(
     py: Python<'py>,
@@ -84,6 +88,7 @@ pub(crate) fn fit_fleet<'py>(
     time: Option<&str>,
     load: Option<&str>,
     bootstrap: Option<Integer>,
+    choice: Option<&str>,
     hold_out: Option<&Bound<'py, PyAny>>,
     thermal: Option<&Bound<'py, PyAny>>,
     prior: Option<PyRef<'_, WeightPrior>>,
@@ -99,6 +104,7 @@ pub(crate) fn fit_fleet<'py>(
         "time",
         "load",
         "bootstrap",
+        "choice",
         "hold_out",
         "thermal",
         "prior",
@@ -116,6 +122,9 @@ pub(crate) fn fit_fleet<'py>(
     let options = FleetOptions {
         by,
         hold_out: hold_out.map(hold_out_of).transpose()?,
+        choice: choice
+            .map_or(Ok(FleetChoice::default()), str::parse)
+            .raise()?,
         read: ReadOptions {
             repair: match repair {
                 true => Repair::Mend,
@@ -140,6 +149,12 @@ pub(crate) fn fit_fleet<'py>(
     }
     dict.set_item("failed", failed)?;
     dict.set_item("notes", found.notes)?;
+    dict.set_item("choice", found.shared.as_ref().map(ToString::to_string))?;
+    let alone = PyDict::new(py);
+    for one in &found.alone {
+        alone.set_item(&one.id, (one.shared_percent, one.own_percent))?;
+    }
+    dict.set_item("alone", alone)?;
     result(py, "FleetFitted", dict)
 }
 

@@ -74,8 +74,8 @@ pub use files::{
 };
 #[cfg(feature = "data")]
 pub use fleet::{
-    FleetFailure, FleetFitted, FleetOptions, FleetRow, Norm, Shape, Strangeness, fit_fleet,
-    join_fleets, prior_of_fleet, read_fleet,
+    FleetAlone, FleetChoice, FleetFailure, FleetFitted, FleetKind, FleetOptions, FleetRow,
+    FleetShared, Norm, Shape, Strangeness, fit_fleet, join_fleets, prior_of_fleet, read_fleet,
 };
 pub use forward::{Forward, forward};
 pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};
@@ -85,9 +85,9 @@ pub use hysteron_core::{
     Outcome, Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
-    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Dynamics, FIT_OPTIONS, Fit, FitOption,
-    FitOptions, LeftOut, LoadLaw, Spacing, WeightPrior, advice, cross_validate, excitation,
-    left_out, plane_of, usual_start, way_against_input,
+    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
+    FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, WeightPrior, advice, cross_validate,
+    excitation, left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,

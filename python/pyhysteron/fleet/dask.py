@@ -1,8 +1,9 @@
 """A fleet on several machines, with Dask. Needs the extra ``dask``: ``pip install 'pyhysteron[dask]'``.
 
 Each part of the data is a task. It writes a table of its own into a folder that all workers reach,
-and `pyhysteron.fleet.join_fleets` puts the tables together. So the result has the same bits as that
-of one machine, whichever worker fitted which part. A task that is lost with its worker runs again
+and `pyhysteron.fleet.join_fleets` puts the tables together. So the result has the same bits
+whichever worker fitted which part. Each part has pilots of its own (``choice='pilots'``). With
+``choice='each'``, or nothing left to the data, the bits are those of one machine. A task that is lost with its worker runs again
 elsewhere, and writes the same table.
 """
 
@@ -69,6 +70,8 @@ def fit_fleet(
         with_warnings=sum(result.with_warnings for result in found),
         failed={name: why for result in found for name, why in result.failed.items()},
         notes=tuple(note for result in found for note in result.notes),
+        choice="; ".join(dict.fromkeys(result.choice for result in found if result.choice)) or None,
+        alone={name: errors for result in found for name, errors in result.alone.items()},
     )
 
 

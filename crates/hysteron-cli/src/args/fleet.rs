@@ -2,7 +2,7 @@
 
 use super::common::{Force, Json};
 use super::fit::FitHow;
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Subcommand)]
@@ -44,6 +44,10 @@ pub(crate) struct FleetFit {
     pub(crate) by: Option<String>,
     #[command(flatten)]
     pub(crate) how: FitHow,
+    /// Who chooses what is left to the data, such as the levels: some actuators, spread over the
+    /// data, for all of them; or each for itself
+    #[arg(long, value_name = "WHO", default_value = "pilots")]
+    pub(crate) choice: FleetChoice,
     /// Where the table of models goes: *.parquet
     #[arg(short, value_name = "MODELS")]
     pub(crate) out: PathBuf,
@@ -51,6 +55,23 @@ pub(crate) struct FleetFit {
     pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FleetChoice {
+    /// Pilots that are spread over the data; who is not served by their choice chooses for itself
+    Pilots,
+    /// Each actuator, as `fit` for it alone
+    Each,
+}
+
+impl From<FleetChoice> for hysteron::FleetChoice {
+    fn from(choice: FleetChoice) -> Self {
+        match choice {
+            FleetChoice::Pilots => Self::Pilots,
+            FleetChoice::Each => Self::Each,
+        }
+    }
 }
 
 #[derive(Args)]

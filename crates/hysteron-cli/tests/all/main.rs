@@ -11,6 +11,7 @@ mod design;
 mod export;
 mod export_fmu;
 mod fleet;
+mod fleet_choice;
 mod hold_out;
 mod identification;
 mod interrupted;

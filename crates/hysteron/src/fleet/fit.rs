@@ -1,18 +1,21 @@
 //! The fit of a whole fleet: reads one actuator after the other, fits them on all threads, keeps
 //! what is done, and writes the table.
 
+use super::choice::{FleetAlone, FleetShared};
 use super::each::each;
 use super::one::{self, digest};
 use super::options::FleetOptions;
+use super::pilots;
+use super::reading::{Job, Reading};
 use super::row::COLUMNS;
-use super::sources::{self, Source};
-use crate::data::{Entry, Group, Groups, Note, Partial, RecordWriter, Value};
+use super::sources;
+use crate::data::{Entry, Note, Partial, RecordWriter, Value};
 use crate::error::{Error, Result};
 use crate::files::Destination;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use sha2::{Digest, Sha256};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -39,6 +42,11 @@ pub struct FleetFitted {
     pub failed: Vec<FleetFailure>,
     /// What was assumed about the files, each with its path.
     pub notes: Vec<String>,
+    /// What the pilots chose for all; `None` where each actuator chose for itself, or nothing was
+    /// left to the data.
+    pub shared: Option<FleetShared>,
+    /// Those that the choice of the pilots does not serve, in the order of the data.
+    pub alone: Vec<FleetAlone>,
 }
 
 /// Fits a model to each actuator of the data, and writes a table with a row for each.
@@ -47,6 +55,12 @@ pub struct FleetFitted {
 /// stand next to each other in one table; a table in another order is read whole, if the limit of
 /// memory allows it. Otherwise each file is an actuator. The rows of the result are in the order of
 /// the data. They have the same bits whatever the number of threads.
+///
+/// With [`FleetChoice::Pilots`](super::FleetChoice::Pilots), what the fit leaves to the data is
+/// chosen once, by pilots that are spread over the data, and each actuator is fitted with that. One
+/// that is predicted unusually badly or well, or whose loop is unusual, is fitted by itself as well.
+/// Where its own choice has an error on what is left out that is smaller by more than a factor of
+/// 1.3, it keeps that, and is named. A fleet of fewer than 24 has no pilots.
 ///
 /// An actuator that cannot be fitted is named in the result and does not end the work. Where some
 /// can be fitted, the table is written.
@@ -67,252 +81,38 @@ pub fn fit_fleet(
 ) -> Result<FleetFitted> {
     let sources = sources::find(data, target.path())?;
     let mut table = RecordWriter::create(target, COLUMNS)?;
-    let key = hex(&Sha256::digest(options.described()));
+    let ended = AtomicBool::new(false);
+    let shared = pilots::choose(&sources, options, &ended, progress)?;
+    let key = hex(&Sha256::digest(options.described(shared.as_ref())));
     let work = Work {
         options,
+        shared: shared.as_ref(),
         progress,
         whole: sources.iter().map(|source| source.bytes).sum(),
-        ended: AtomicBool::new(false),
+        ended: &ended,
         done: Mutex::new(Done::new(Partial::beside(target.path(), &key)?)),
     };
-    let mut reading = Reading::new(&sources, options, &work);
+    let mut reading = Reading::new(&sources, options, &ended);
     each(std::iter::from_fn(|| reading.next()), |job| work.on(job));
-    let twice = reading.twice;
+    let Reading { twice, notes, .. } = reading;
     let done = work.done.into_inner();
     let done = done.unwrap_or_else(PoisonError::into_inner);
-    done.write(&mut table, twice)?.finish(table)
-}
-
-/// An actuator to be fitted.
-struct Job {
-    /// Its place in the order of the data.
-    place: usize,
-    id: String,
-    path: PathBuf,
-    recording: Result<(Recording, Vec<Note>)>,
-    /// Bytes of all data up to its end.
-    bytes: u64,
-}
-
-/// Hands out the actuators in the order of the data.
-struct Reading<'a> {
-    sources: std::slice::Iter<'a, Source>,
-    options: &'a FleetOptions<'a>,
-    work: &'a Work<'a>,
-    table: Option<Table<'a>>,
-    /// Bytes of the files before this one.
-    before: u64,
-    place: usize,
-    /// The place of each actuator that was found.
-    known: HashMap<String, usize>,
-    /// Places that count no more.
-    twice: HashSet<usize>,
-}
-
-/// A table of several actuators.
-struct Table<'a> {
-    source: &'a Source,
-    rest: Rest,
-    /// Those that were found in it.
-    seen: HashSet<String>,
-}
-
-enum Rest {
-    InOrder(Box<Groups>),
-    Held(std::vec::IntoIter<Group>),
-}
-
-impl<'a> Reading<'a> {
-    fn new(sources: &'a [Source], options: &'a FleetOptions<'a>, work: &'a Work<'a>) -> Self {
-        Self {
-            sources: sources.iter(),
-            options,
-            work,
-            table: None,
-            before: 0,
-            place: 0,
-            known: HashMap::new(),
-            twice: HashSet::new(),
-        }
-    }
-
-    fn next(&mut self) -> Option<Job> {
-        loop {
-            if self.work.ended.load(Ordering::Relaxed) {
-                return None;
-            }
-            if let Some(table) = self.table.take() {
-                if let Some(job) = self.of_table(table) {
-                    return Some(job);
-                }
-                continue;
-            }
-            let source = self.sources.next()?;
-            let Some(by) = self.options.by else {
-                self.before += source.bytes;
-                let FleetOptions { columns, read, .. } = *self.options;
-                let recording = Recording::read(&source.path, columns, read);
-                return Some(self.job(source.name.clone(), source, recording, 0));
-            };
-            let FleetOptions { columns, read, .. } = *self.options;
-            match Groups::open(&source.path, by, columns, read) {
-                Ok(groups) => {
-                    self.table = Some(Table {
-                        source,
-                        rest: Rest::InOrder(Box::new(groups)),
-                        seen: HashSet::new(),
-                    });
-                }
-                Err(error) => return Some(self.broken(source, error)),
-            }
-        }
-    }
-
-    /// The next actuator of a table; none at its end.
-    fn of_table(&mut self, mut table: Table<'a>) -> Option<Job> {
-        let source = table.source;
-        let group = match &mut table.rest {
-            Rest::Held(groups) => Ok(groups.next()),
-            Rest::InOrder(groups) => groups.next(),
-        };
-        match group {
-            Err(error) => Some(self.broken(source, error)),
-            Ok(None) => {
-                if let Rest::InOrder(groups) = table.rest {
-                    let path = source.path.display();
-                    let remarks = groups.remarks();
-                    let notes = remarks.iter().map(|note| format!("{path}: {note}"));
-                    self.work.done().notes.extend(notes);
-                }
-                self.before += source.bytes;
-                None
-            }
-            Ok(Some(group)) if table.seen.contains(&group.label) => self.held(table),
-            Ok(Some(group)) => {
-                table.seen.insert(group.label.clone());
-                self.table = Some(table);
-                let recording = match group.label.is_empty() {
-                    false => group.recording,
-                    true => Err(Error::Recording {
-                        path: Some(source.path.clone()),
-                        row: None,
-                        column: self.options.by.map(str::to_owned),
-                        problem: "rows without a label belong to no actuator".into(),
-                    }),
-                };
-                Some(self.job(group.label, source, recording, group.bytes))
-            }
-        }
-    }
-
-    /// Reads a table whole, because rows of an actuator are not next to each other. What was found
-    /// in it counts no more.
-    fn held(&mut self, table: Table<'a>) -> Option<Job> {
-        let source = table.source;
-        for label in &table.seen {
-            self.twice.extend(self.known.remove(label));
-        }
-        let by = self.options.by.unwrap_or_default();
-        let FleetOptions { columns, read, .. } = *self.options;
-        let groups = Groups::open(&source.path, by, columns, read).and_then(Groups::all);
-        let path = source.path.display();
-        match groups {
-            Ok(groups) => {
-                let note = format!(
-                    "{path}: the rows of an actuator are not next to each other, so it was read \
-                     whole; sorted by `{by}` it is read in blocks"
-                );
-                self.work.done().notes.push(note);
-                self.table = Some(Table {
-                    source,
-                    rest: Rest::Held(groups.into_iter()),
-                    seen: HashSet::new(),
-                });
-                let table = self.table.take()?;
-                self.of_table(table)
-            }
-            Err(Error::Recording {
-                path,
-                row,
-                column,
-                problem,
-            }) => {
-                let problem = format!(
-                    "the rows of an actuator are not next to each other, and the table cannot be \
-                     read whole ({problem}): sort its rows by `{by}`"
-                );
-                let error = Error::Recording {
-                    path,
-                    row,
-                    column,
-                    problem,
-                };
-                Some(self.broken(source, error))
-            }
-            Err(error) => Some(self.broken(source, error)),
-        }
-    }
-
-    /// A file that cannot be read any further.
-    fn broken(&mut self, source: &Source, error: Error) -> Job {
-        self.before += source.bytes;
-        let id = source.name.clone();
-        self.place += 1;
-        self.numbered(id, source, Err(error), 0)
-    }
-
-    fn job(
-        &mut self,
-        id: String,
-        source: &Source,
-        recording: Result<(Recording, Vec<Note>)>,
-        bytes: u64,
-    ) -> Job {
-        self.place += 1;
-        let recording = match self.known.insert(id.clone(), self.place) {
-            None => recording,
-            Some(other) => {
-                self.twice.insert(other);
-                let problem = format!(
-                    "the actuator `{id}` is in other data too: name files and labels so that each \
-                     actuator has its own"
-                );
-                Err(Error::Recording {
-                    path: Some(source.path.clone()),
-                    row: None,
-                    column: None,
-                    problem,
-                })
-            }
-        };
-        self.numbered(id, source, recording, bytes)
-    }
-
-    /// The job of the present number.
-    fn numbered(
-        &self,
-        id: String,
-        source: &Source,
-        recording: Result<(Recording, Vec<Note>)>,
-        bytes: u64,
-    ) -> Job {
-        Job {
-            place: self.place,
-            id,
-            path: source.path.clone(),
-            recording,
-            bytes: self.before + bytes,
-        }
-    }
+    let found = done.write(&mut table, twice)?.finish(table)?;
+    Ok(FleetFitted {
+        notes,
+        shared,
+        ..found
+    })
 }
 
 /// What the threads share.
 struct Work<'a> {
     options: &'a FleetOptions<'a>,
+    shared: Option<&'a FleetShared>,
     progress: Progress<'a>,
     /// Bytes of all data.
     whole: u64,
-    ended: AtomicBool,
+    ended: &'a AtomicBool,
     done: Mutex<Done>,
 }
 
@@ -324,7 +124,7 @@ struct Done {
     failed: Vec<(usize, FleetFailure)>,
     resumed: HashSet<usize>,
     with_warnings: usize,
-    notes: Vec<String>,
+    alone: Vec<FleetAlone>,
     bytes: u64,
     /// Why the work ends before its end.
     ended: Option<Error>,
@@ -380,7 +180,8 @@ impl Work<'_> {
             true => Err(Error::Fit("ended".into())),
         };
         let progress = Progress::new(&report);
-        let row = one::fit(id, file, digest, recording, notes, self.options, progress)?;
+        let how = (self.options, self.shared);
+        let row = one::fit(id, file, digest, (recording, notes), how, progress)?;
         let values = row.values();
         let mut done = self.done();
         match done.partial.add(&key, &values) {
@@ -404,7 +205,7 @@ impl Done {
             failed: Vec::new(),
             resumed: HashSet::new(),
             with_warnings: 0,
-            notes: Vec::new(),
+            alone: Vec::new(),
             bytes: 0,
             ended: None,
         }
@@ -421,10 +222,16 @@ impl Done {
         self.failed.sort_by_key(|(place, _)| *place);
         for (_, entry) in &self.fitted {
             let values = self.partial.read(*entry)?;
-            let mut named = COLUMNS.iter().zip(&values);
-            let warned =
-                named.any(|((name, _), value)| *name == "warnings" && *value != Value::None);
+            let named = |wanted: &str| {
+                let place = COLUMNS.iter().position(|(name, _)| *name == wanted);
+                place.and_then(|place| values.get(place))
+            };
+            let warned = named("warnings").is_some_and(|value| *value != Value::None);
             self.with_warnings += usize::from(warned);
+            if let (Some(Value::Text(id)), Some(Value::Text(model))) = (named("id"), named("model"))
+            {
+                self.alone.extend(FleetAlone::from_record(id, model));
+            }
             table.push(values)?;
         }
         Ok(self)
@@ -448,7 +255,8 @@ impl Done {
                 .into_iter()
                 .map(|(_, failure)| failure)
                 .collect(),
-            notes: self.notes,
+            alone: self.alone,
+            ..FleetFitted::default()
         })
     }
 }

@@ -1,11 +1,13 @@
 //! The fit of one actuator of a fleet: the same steps as for one alone.
 
+use super::choice::FleetShared;
 use super::options::FleetOptions;
 use super::row::FleetRow;
 use crate::data::Note;
 use crate::error::{Error, Result};
-use crate::hold_out::fit_holding_out;
-use crate::identify::advice;
+use crate::hold_out::{HeldOut, fit_holding_out};
+use crate::identify::{Fit, advice};
+use crate::model::Model;
 use crate::prepare::{Doubt, doubts, prepare, rate_dependence};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -34,64 +36,107 @@ pub(super) fn digest(recording: &Recording) -> [u8; 32] {
     hash.finalize().into()
 }
 
-/// Fits the actuator `id`. A defect of this library is an error of this actuator alone.
+/// Fits the actuator `id`, with what the pilots `shared` or by itself. A defect of this library is
+/// an error of this actuator alone.
 pub(super) fn fit(
     id: &str,
     file: String,
     digest: [u8; 32],
-    recording: Recording,
-    notes: Vec<Note>,
-    options: &FleetOptions<'_>,
+    (recording, notes): (Recording, Vec<Note>),
+    (options, shared): (&FleetOptions<'_>, Option<&FleetShared>),
     progress: Progress<'_>,
 ) -> Result<FleetRow> {
-    let fitted = catch_unwind(AssertUnwindSafe(|| {
-        fit_one(recording, notes, options, progress)
-    }));
-    let failed = |_| Err(Error::Fit("a defect of hysteron ended this fit".into()));
-    let (model, warnings) = fitted.unwrap_or_else(failed)?;
+    let (model, warnings) = guarded(|| {
+        let ready = Ready::new(recording, &notes, options, progress)?;
+        let fitted = match shared {
+            None => ready.fitted(&options.fit, options, progress)?,
+            Some(shared) => ready.fitted_sharing(shared, options, progress)?,
+        };
+        ready.advised(fitted)
+    })?;
     let digest = digest.iter().map(|byte| format!("{byte:02x}")).collect();
     Ok(FleetRow::new(id, file, digest, model, warnings))
 }
 
-fn fit_one(
-    mut recording: Recording,
-    notes: Vec<Note>,
-    options: &FleetOptions<'_>,
-    progress: Progress<'_>,
-) -> Result<(crate::model::Model, Vec<String>)> {
-    let mut warnings: Vec<String> = notes.iter().map(Note::to_string).collect();
-    let units = [
-        (&options.input_unit, &mut recording.input_quantity),
-        (&options.output_unit, &mut recording.output_quantity),
-    ];
-    for (unit, quantity) in units {
-        if unit.is_some() {
-            quantity.unit.clone_from(unit);
+/// What `work` returns; a defect of this library is an error of it.
+pub(super) fn guarded<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    let failed = |_| Err(Error::Fit("a defect of hysteron ended this fit".into()));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(failed)
+}
+
+/// A recording that can be fitted, and what there is to say of it.
+pub(super) struct Ready {
+    recording: Recording,
+    warnings: Vec<String>,
+}
+
+/// A model, and what was held out of its fit.
+pub(super) type Fitted = (Model, Option<HeldOut>);
+
+impl Ready {
+    pub(super) fn new(
+        mut recording: Recording,
+        notes: &[Note],
+        options: &FleetOptions<'_>,
+        progress: Progress<'_>,
+    ) -> Result<Self> {
+        let mut warnings: Vec<String> = notes.iter().map(Note::to_string).collect();
+        let units = [
+            (&options.input_unit, &mut recording.input_quantity),
+            (&options.output_unit, &mut recording.output_quantity),
+        ];
+        for (unit, quantity) in units {
+            if unit.is_some() {
+                quantity.unit.clone_from(unit);
+            }
+        }
+        if let Some(steps) = options.steps() {
+            recording = prepare(&recording, steps, progress)?.0;
+        } else {
+            warnings.extend(doubts(&recording)?.iter().map(Doubt::to_string));
+        }
+        if recording.time.is_some()
+            && let Some(rate) = rate_dependence(&recording)?.filter(|rate| rate.is_material())
+        {
+            warnings.push(format!(
+                "the loops depend on rate ({:.2} % of the range), which a static model cannot follow",
+                rate.percent
+            ));
+        }
+        Ok(Self {
+            recording,
+            warnings,
+        })
+    }
+
+    pub(super) fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// The model of a fit.
+    pub(super) fn fitted(
+        &self,
+        fit: &Fit<'_>,
+        options: &FleetOptions<'_>,
+        progress: Progress<'_>,
+    ) -> Result<Fitted> {
+        let recording = &self.recording;
+        let fit = fit.clone().repeats(Vec::new()).progress(progress);
+        match &options.hold_out {
+            None => Ok((fit.run(recording)?, None)),
+            Some(what) => {
+                let (model, held_out) = fit_holding_out(&fit, recording, what)?;
+                Ok((model, Some(held_out)))
+            }
         }
     }
-    if let Some(steps) = options.steps() {
-        recording = prepare(&recording, steps, progress)?.0;
-    } else {
-        warnings.extend(doubts(&recording)?.iter().map(Doubt::to_string));
+
+    /// The model with its warnings.
+    fn advised(self, (model, held_out): Fitted) -> Result<(Model, Vec<String>)> {
+        let mut warnings = self.warnings;
+        let advice = advice(&model, std::slice::from_ref(&self.recording))?;
+        let of_held_out = held_out.iter().flat_map(HeldOut::advice);
+        warnings.extend(advice.into_iter().chain(of_held_out).map(|a| a.to_string()));
+        Ok((model, warnings))
     }
-    if recording.time.is_some()
-        && let Some(rate) = rate_dependence(&recording)?.filter(|rate| rate.is_material())
-    {
-        warnings.push(format!(
-            "the loops depend on rate ({:.2} % of the range), which a static model cannot follow",
-            rate.percent
-        ));
-    }
-    let fit = options.fit.clone().repeats(Vec::new()).progress(progress);
-    let (model, held_out) = match &options.hold_out {
-        None => (fit.run(&recording)?, None),
-        Some(what) => {
-            let (model, held_out) = fit_holding_out(&fit, &recording, what)?;
-            (model, Some(held_out))
-        }
-    };
-    let advice = advice(&model, std::slice::from_ref(&recording))?;
-    let of_held_out = held_out.iter().flat_map(|held_out| held_out.advice());
-    warnings.extend(advice.into_iter().chain(of_held_out).map(|a| a.to_string()));
-    Ok((model, warnings))
 }

@@ -1,5 +1,6 @@
 //! The settings of a fleet's fit.
 
+use super::choice::{FleetChoice, FleetShared};
 use crate::data::{Columns, ReadOptions};
 use crate::identify::Fit;
 use crate::prepare::{PrepareOptions, Step};
@@ -21,6 +22,8 @@ pub struct FleetOptions<'a> {
     pub prepare: Option<PrepareOptions>,
     /// What is held out of each fit; `None` for nothing.
     pub hold_out: Option<HoldOut>,
+    /// Who chooses what the fit leaves to the data.
+    pub choice: FleetChoice,
     /// Unit of the input, if it is not that of the file.
     pub input_unit: Option<String>,
     /// Unit of the output, if it is not that of the file.
@@ -38,6 +41,7 @@ impl<'a> FleetOptions<'a> {
             read: ReadOptions::default(),
             prepare: None,
             hold_out: None,
+            choice: FleetChoice::default(),
             input_unit: None,
             output_unit: None,
         }
@@ -49,8 +53,9 @@ impl<'a> FleetOptions<'a> {
         steps.filter(|steps| **steps != PrepareOptions::all(Step::Off))
     }
 
-    /// What the result depends on, besides the samples: in a text, for a digest.
-    pub(super) fn described(&self) -> String {
+    /// What the result depends on, besides the samples: in a text, for a digest. It has what the
+    /// pilots chose.
+    pub(super) fn described(&self, shared: Option<&FleetShared>) -> String {
         let Self {
             columns,
             by,
@@ -58,6 +63,7 @@ impl<'a> FleetOptions<'a> {
             read,
             prepare: _,
             hold_out,
+            choice: _,
             input_unit,
             output_unit,
         } = self;
@@ -66,6 +72,9 @@ impl<'a> FleetOptions<'a> {
         let steps = self.steps();
         let version = env!("CARGO_PKG_VERSION");
         let units = (input_unit, output_unit);
-        format!("{version} {columns:?} {by:?} {fit:?} {repair:?} {steps:?} {hold_out:?} {units:?}")
+        format!(
+            "{version} {columns:?} {by:?} {fit:?} {repair:?} {steps:?} {hold_out:?} {units:?} \
+             {shared:?}"
+        )
     }
 }

@@ -9,7 +9,7 @@ use crate::identify::kept;
 use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
-use crate::identify::stages::{self, Asked};
+use crate::identify::stages::{self, Asked, SpacingShape};
 use crate::identify::weights::problem::{check_gram, check_options};
 use crate::model::{Delay, Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
@@ -44,13 +44,17 @@ use std::sync::Arc;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Fit<'a> {
-    options: FitOptions,
-    open: Open,
-    auto_start: bool,
-    auto_bootstrap: bool,
-    body: bool,
+    pub(super) options: FitOptions,
+    pub(super) open: Open,
+    pub(super) auto_start: bool,
+    pub(super) auto_bootstrap: bool,
+    pub(super) body: bool,
+    /// How the levels follow the output, where that was chosen before.
+    pub(super) shape: Option<SpacingShape>,
+    /// Whether the model is tested on what is left out, even if nothing is chosen by it.
+    pub(super) tested: bool,
     repeats: Vec<Recording>,
-    prior: Option<Arc<WeightPrior>>,
+    pub(super) prior: Option<Arc<WeightPrior>>,
     progress: Progress<'a>,
 }
 
@@ -87,6 +91,8 @@ impl From<FitOptions> for Fit<'_> {
             auto_start: false,
             auto_bootstrap: false,
             body: false,
+            shape: None,
+            tested: false,
             repeats: Vec::new(),
             prior: None,
             progress: Progress::NONE,
@@ -411,6 +417,8 @@ impl<'a> Fit<'a> {
                     body: self.body,
                     open: self.open,
                     auto_bootstrap: self.auto_bootstrap,
+                    shape: self.shape,
+                    tested: self.tested,
                     outliers: &outliers,
                 };
                 stages::fit(&seen, &options, asked, self.progress)?

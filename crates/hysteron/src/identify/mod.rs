@@ -3,12 +3,13 @@
 //! `fit` is the entry point; `options` are its settings, `words` the same as texts. `weights` solves the least-squares
 //! problem. `delay` finds the dead time and `outliers` are found, both first. `choose` selects
 //! levels and smoothness. `doubt` estimates how well the data determine the weights. `stages`
-//! identifies the thermal body in front of the operators.
+//! identifies the thermal body in front of the operators. `chosen` hands choices on to other fits.
 //! `advice` and `monotone` warn about data that the model cannot follow.
 
 mod advice;
 mod changed;
 mod choose;
+mod chosen;
 mod delay;
 mod doubt;
 mod fit;
@@ -31,6 +32,7 @@ pub use choose::left_out::{LeftOut, left_out};
 pub(crate) use choose::left_out::{predicted_from, predicted_without};
 pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
+pub use chosen::Chosen;
 pub(crate) use doubt::excitation::Unresolved;
 pub use doubt::excitation::excitation;
 pub(crate) use doubt::spectrum::determined;
@@ -43,6 +45,7 @@ pub(crate) use options::SOME_SMOOTHNESS;
 pub use options::{Auto, Choice, Dynamics, FitOptions, LoadLaw, Spacing};
 pub use prior::WeightPrior;
 pub(crate) use rest::find_rest;
+pub use stages::SpacingShape;
 pub use weights::experiment::plane_of;
 pub(crate) use weights::pivoting;
 pub(crate) use weights::rows::Term;

@@ -47,3 +47,13 @@ impl Open {
         Ok((options, Some(found)))
     }
 }
+
+/// What given levels and a given smoothness are worth, by what is left out.
+pub(super) fn tested(
+    seen: Seen<'_>,
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<Validation> {
+    let candidates = Candidates::new(Some(options.levels), Some(options.smooth));
+    Ok(validated(seen, options, &candidates, progress)?.1)
+}

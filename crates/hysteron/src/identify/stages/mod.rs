@@ -15,9 +15,11 @@ mod ring;
 mod spacing;
 
 pub(crate) use after::check_time;
+pub use spacing::SpacingShape;
+pub(crate) use spacing::shape_of as spacing_shape;
 
 use crate::error::Result;
-use crate::identify::choose::{Open, Seen};
+use crate::identify::choose::{Open, Seen, tested};
 use crate::identify::fixed::fit_weights_without;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::model::{Found, Model, Outlier};
@@ -35,6 +37,10 @@ pub(crate) struct Asked<'a> {
     pub(crate) open: Open,
     /// Whether the number of replicates follows from the levels.
     pub(crate) auto_bootstrap: bool,
+    /// How the levels follow the output, where that was chosen before.
+    pub(crate) shape: Option<SpacingShape>,
+    /// Whether what was given is tested on what is left out, too.
+    pub(crate) tested: bool,
     /// Samples without weight.
     pub(crate) outliers: &'a [Outlier],
 }
@@ -88,12 +94,28 @@ pub(crate) fn fit(
     };
     let (mut options, mut validation) = asked.open.choose(unspaced, &options, progress)?;
     if options.spacing == Spacing::Auto {
-        let spaced = spacing::find(unspaced, &options, (asked.open, &validation), progress)?;
-        if let Some(spaced) = spaced {
+        let chosen = (asked.open, &validation);
+        let spaced = spacing::find(unspaced, &options, chosen, asked.shape, progress)?;
+        if let Some(mut spaced) = spaced {
+            if asked.tested && spaced.validation.is_none() {
+                let bent = Seen {
+                    operators: &spaced.recordings,
+                    ..unspaced
+                };
+                spaced.validation = Some(tested(bent, &spaced.options, progress)?);
+            }
             found.spacing = spaced.corners;
             seen = Cow::Owned(spaced.recordings);
             (options, validation) = (spaced.options, spaced.validation);
         }
+    }
+    if asked.tested && validation.is_none() {
+        let even = Seen {
+            operators: &seen,
+            even: &seen,
+            measured: recordings,
+        };
+        validation = Some(tested(even, &options, progress)?);
     }
     if asked.auto_bootstrap {
         options.bootstrap = FitOptions::usual_bootstrap(options.levels);

@@ -6,9 +6,10 @@ use crate::identify::choose::{Open, Seen};
 use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::plane_of_all;
-use crate::model::{Plane, Validation};
+use crate::model::{Model, Plane, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
+use serde::Serialize;
 
 /// Shares of the levels that are at equal distances. Without them, a stretch of the input where the
 /// output rests would have no level, and the output could not move there in another recording.
@@ -24,6 +25,38 @@ const BINS: usize = 50;
 /// fewer tools understand.
 const WORTH: f64 = 0.05;
 
+/// How levels follow the path of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SpacingShape {
+    /// Share of the levels that are at equal distances.
+    pub even: f64,
+    /// The others follow the path of the output to this power.
+    pub power: f64,
+}
+
+/// The shapes that are tried.
+fn shapes() -> impl Iterator<Item = SpacingShape> {
+    let of = |even| POWERS.map(|power| SpacingShape { even, power });
+    EVEN.into_iter().flat_map(of)
+}
+
+/// The shape of a model's levels, by the recording that it was fitted to; `None` for equal
+/// distances.
+pub(crate) fn shape_of(model: &Model, recording: &Recording) -> Option<SpacingShape> {
+    if model.spacing().is_empty() {
+        return None;
+    }
+    let plane = model.plane();
+    let path = path(std::slice::from_ref(recording), plane);
+    // Stages move the output a little, so the nearest one is it.
+    let far = |shape: &SpacingShape| -> f64 {
+        let corners = corners(&path, plane, *shape);
+        let pairs = corners.iter().zip(model.spacing());
+        pairs.map(|(a, b)| (a - b).abs()).sum()
+    };
+    shapes().min_by(|a, b| far(a).total_cmp(&far(b)))
+}
+
 /// Levels that are not at equal distances.
 pub(super) struct Spaced {
     /// The `K + 1` corners of the grid, ascending, from the bottom of the plane to its top.
@@ -36,11 +69,13 @@ pub(super) struct Spaced {
 }
 
 /// Finds the corners that fit the recordings best. `None` if equal distances fit as well. Where
-/// levels or smoothness were chosen (`chosen`), the same criterion decides.
+/// levels or smoothness were chosen (`chosen`), the same criterion decides. A `shape` that was
+/// chosen before is taken.
 pub(super) fn find(
     seen: Seen<'_>,
     options: &FitOptions,
     (open, chosen): (Open, &Option<Validation>),
+    shape: Option<SpacingShape>,
     progress: Progress<'_>,
 ) -> Result<Option<Spaced>> {
     let recordings = seen.operators;
@@ -49,7 +84,10 @@ pub(super) fn find(
         range: Some((plane.min(), plane.max())),
         ..options.clone()
     };
-    let corners = best_fit(recordings, &plane, &options, progress)?;
+    let corners = match shape {
+        Some(shape) => corners(&path(recordings, &plane), &plane, shape),
+        None => best_fit(recordings, &plane, &options, progress)?,
+    };
     if corners.is_empty() {
         return Ok(None);
     }
@@ -103,13 +141,11 @@ fn best_fit(
     };
     let mut best = (Vec::new(), (1.0 - WORTH) * rated(&[])?);
     let path = path(recordings, plane);
-    for even in EVEN {
-        for power in POWERS {
-            let corners = corners(&path, plane, even, power);
-            let error = rated(&corners)?;
-            if error < best.1 {
-                best = (corners, error);
-            }
+    for shape in shapes() {
+        let corners = corners(&path, plane, shape);
+        let error = rated(&corners)?;
+        if error < best.1 {
+            best = (corners, error);
         }
     }
     Ok(best.0)
@@ -132,7 +168,8 @@ fn path(recordings: &[Recording], plane: &Plane) -> Vec<f64> {
 }
 
 /// Quantiles of the path to a power, mixed with equal distances.
-fn corners(path: &[f64], plane: &Plane, even: f64, power: f64) -> Vec<f64> {
+fn corners(path: &[f64], plane: &Plane, shape: SpacingShape) -> Vec<f64> {
+    let SpacingShape { even, power } = shape;
     let (levels, bins) = (plane.levels(), path.len());
     let (low, high) = (plane.bottom(), plane.max());
     let width = (high - low) / bins as f64;
