@@ -48,7 +48,7 @@ fn wrong_words_are_told_what_was_meant() {
         ("help fti", "'fit'"),
         ("run.csv", "hysteron start run.csv"),
         ("model.json", "hysteron inspect model.json"),
-        ("export model.json", "hysteron export c | fmu"),
+        ("export model.json", "hysteron export c | arduino | fmu"),
         ("export fmi model.json", "'fmu'"),
         ("fit run.csv", "hysteron inspect FILE"),
         ("invert model.json run.csv --input x", "--target"),
