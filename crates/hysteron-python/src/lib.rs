@@ -26,6 +26,7 @@ mod model;
 mod pid;
 mod plane;
 mod plant;
+mod plot;
 mod pool;
 mod prepare;
 mod prior;

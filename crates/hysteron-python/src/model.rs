@@ -6,7 +6,6 @@ use crate::error::Raise;
 use crate::evaluate;
 use crate::integer::Integer;
 use crate::plane::{levels_of, on_plane, weights_of};
-use crate::recording::Recording;
 use hysteron::{Plane, Quantity, Sign};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -298,33 +297,6 @@ impl Model {
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let summary = hysteron::inspect_model(&self.inner).raise()?;
         result_of(py, "ModelSummary", &summary)
-    }
-
-    /// Draw the loop between the ends of the plane and the weights; with a recording, both over its
-    /// input and over time. A notebook shows it at its own width. Needs matplotlib.
-    ///
-    /// Parameters
-    /// ----------
-    /// recording : Recording, optional
-    ///
-    /// Returns
-    /// -------
-    /// plot.Picture
-    ///     Its `figure` is matplotlib's.
-    ///
-    /// Examples
-    /// --------
-    /// >>> picture = pyhysteron.Model([1.0, 2.0, 4.0], (20, 80)).plot()
-    /// >>> len(picture.figure.axes) >= 2
-    /// True
-    #[pyo3(signature = (recording=None))]
-    fn plot<'py>(
-        slf: &Bound<'py, Self>,
-        recording: Option<&Bound<'py, Recording>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let plot = slf.py().import("pyhysteron.plot")?;
-        plot.getattr("_notebook")?
-            .call_method1("_model", (slf, recording))
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -5,7 +5,6 @@ use crate::choices::none_left;
 use crate::convert::result_of;
 use crate::error::Raise;
 use crate::integer::Integer;
-use crate::model::Model;
 use crate::pool::detached;
 use hysteron::{FitOptions, Origin, Plane, Quantity};
 use numpy::PyArray1;
@@ -301,33 +300,6 @@ impl Recording {
         };
         let summary = detached(py, || hysteron::inspect_recording(&*self.inner, plane)).raise()?;
         result_of(py, "RecordingSummary", &summary)
-    }
-
-    /// Draw output over input, and both over time; with a model, its output as well. A notebook
-    /// shows it at its own width. Needs matplotlib.
-    ///
-    /// Parameters
-    /// ----------
-    /// model : Model, optional
-    ///
-    /// Returns
-    /// -------
-    /// plot.Picture
-    ///     Its `figure` is matplotlib's.
-    ///
-    /// Examples
-    /// --------
-    /// >>> picture = pyhysteron.Recording([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]).plot()
-    /// >>> len(picture.figure.axes)
-    /// 3
-    #[pyo3(signature = (model=None))]
-    fn plot<'py>(
-        slf: &Bound<'py, Self>,
-        model: Option<&Bound<'py, Model>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let plot = slf.py().import("pyhysteron.plot")?;
-        plot.getattr("_notebook")?
-            .call_method1("_recording", (slf, model))
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -2,7 +2,6 @@
 
 use crate::draw::sheet::{Drawing, Sheet};
 use crate::number::capitalised;
-use crate::subject::Subject;
 use hysteron::printable;
 
 /// A figure of what the view `V` holds.
@@ -34,14 +33,20 @@ pub(crate) struct Drawn {
     pub(crate) drawing: Drawing,
 }
 
-impl<V: Subject> Figure<V> {
-    /// The figure of `view`; what is simulated says so, with `simulated` before its caption.
-    pub(crate) fn drawn(&self, view: &V, simulated: Option<&str>) -> Option<Drawn> {
+impl<V> Figure<V> {
+    /// The figure of `view`; what is simulated says so, with `simulated` before its caption. Lines
+    /// through so many samples break at those of `begins`.
+    pub(crate) fn drawn(
+        &self,
+        view: &V,
+        begins: (usize, &[usize]),
+        simulated: Option<&str>,
+    ) -> Option<Drawn> {
         let [title, caption] = (self.words)(view)?.map(|words| capitalised(&words));
         let caption = simulated.unwrap_or_default().to_owned() + &caption;
         let note = simulated.map(|_| "simulated, not measured");
         let mut sheet = Sheet::new(self.stem, self.width, &title, note);
-        sheet.canvas.breaking(view.begins());
+        sheet.canvas.breaking(begins);
         let height = (self.draw)(view, &mut sheet)?;
         let mut drawing = sheet.finish(height, &caption);
         // Names come from anywhere; XML allows no control characters.

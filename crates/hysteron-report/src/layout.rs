@@ -30,7 +30,9 @@ impl Layout {
         let figures = || sections.iter().flat_map(Section::figures);
         let wanted = figures().filter(|figure| is_wanted(figure.stem));
         let drawn: Vec<Drawn> = wanted
-            .filter_map(|figure| figure.drawn(view, simulated.map(|words| words.caption)))
+            .filter_map(|figure| {
+                figure.drawn(view, view.begins(), simulated.map(|words| words.caption))
+            })
             .collect();
         Self {
             stems: figures().map(|figure| figure.stem).collect(),

@@ -1,11 +1,13 @@
 //! What a fit found, and which fit is the best.
 
 use super::id::Id;
-use super::layers::Spans;
 use hysteron::{Budget, Errors, HeldOut, Model, Quantity, State};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Rows, counted from 1: the first and the last one of each span.
+pub(super) type Spans = Arc<[(usize, usize)]>;
 
 /// A fit that was made.
 #[derive(Debug)]

@@ -2,22 +2,20 @@
 //! its band and its outliers.
 
 use super::fault::Fault;
+use super::fitted::Spans;
 use super::fitting::held_part;
 use super::id::Id;
-use super::look::{Picture, View};
 use super::opened::Opened;
 use super::seen::Seen;
 use super::state::Session;
 use super::thinned::{Points, when};
+use super::view::{Picture, View};
 use hysteron::{HoldOut, Recording, Surroundings};
 use serde::Serialize;
 use std::sync::Arc;
 
 /// The most outliers that are drawn.
 const OUTLIERS: usize = 2000;
-
-/// Rows, counted from 1: the first and the last one of each span.
-pub(super) type Spans = Arc<[(usize, usize)]>;
 
 /// What is drawn besides lines.
 #[derive(Debug, Clone, Default, Serialize)]

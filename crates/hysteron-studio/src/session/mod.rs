@@ -3,7 +3,7 @@
 //! `request` defines both, `handle` leads from one to the other, `fault` is what is wrong. `state` is
 //! what the session keeps. `opened` is a file, `parts` its recordings, `prepare` their preparation,
 //! `design` the experiment that is missing. `fitting` asks for a fit, `job` is its work, `fitted` what
-//! it found; `carried` has these as bytes. `look` and `plane` make the pictures, with the lines of
+//! it found; `carried` has these as bytes. `view` says what a picture shows. `look` and `plane` make the pictures, with the lines of
 //! `seen` from what `thinned` leaves; `layers` is drawn besides them, and `pick` points at a sample.
 //! `drive` is a model moved by hand, `take_home` what can be taken away, with `c_archive`; `commands`
 //! is the same work as text, `saved` the session as a file.
@@ -34,6 +34,7 @@ mod seen;
 mod state;
 mod take_home;
 mod thinned;
+mod view;
 mod wish;
 
 pub use design::DesignView;
@@ -46,7 +47,7 @@ pub use handle::Answer;
 pub use id::Id;
 pub use job::{Finished, Job, JobView};
 pub use layers::Layers;
-pub use look::{Area, Curves, Line, Picture, View};
+pub use look::{Curves, Line};
 pub use opened::{Part, Purpose, RepairView};
 pub use pick::WorstView;
 pub use plane::{PlaneKind, PlaneView, SampleView};
@@ -55,4 +56,5 @@ pub use request::{Overview, Request, Response, Told};
 pub use state::Session;
 pub use take_home::{Download, Take};
 pub use thinned::Ends;
+pub use view::{Area, Picture, View};
 pub use wish::Wish;

@@ -2,11 +2,11 @@
 
 use super::fault::Fault;
 use super::id::Id;
-use super::look::{Picture, View};
 use super::plane::SampleView;
 use super::seen::Seen;
 use super::state::Session;
 use super::thinned::when;
+use super::view::{Picture, View};
 use hysteron::Recording;
 use hysteron_report::decimate::Point;
 use serde::Serialize;

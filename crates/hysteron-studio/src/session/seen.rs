@@ -1,8 +1,8 @@
 //! The samples that a view shows, and lines through them.
 
-use super::look::{Picture, View};
 use super::parts::Parts;
 use super::thinned::{Points, Shape, rows, thinned, when};
+use super::view::{Picture, View};
 use hysteron::Recording;
 use hysteron_report::decimate::Point;
 use std::ops::Range;
