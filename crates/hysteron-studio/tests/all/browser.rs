@@ -166,7 +166,7 @@ fn names_from_files_are_text_only(way: Way) {
     studio.end();
 }
 
-/// A recording whose fit with many levels takes a while.
+/// A recording whose fit with many levels takes longer than a busy browser.
 fn wave() -> String {
     let mut text = "u,y\n".to_owned();
     for n in 0..4000 {
@@ -186,7 +186,7 @@ fn a_fit_is_cancelled_and_the_page_goes_on(way: Way) {
         "document.querySelector('#plot-loop .scatterlayer path')",
     );
     // Two fits: one runs, the other waits.
-    browser.value(&tab, "document.querySelector('[name=levels]').value = '40'");
+    browser.value(&tab, "document.querySelector('[name=levels]').value = '60'");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.wait(
