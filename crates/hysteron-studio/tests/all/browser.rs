@@ -186,7 +186,7 @@ fn a_fit_is_cancelled_and_the_page_goes_on(way: Way) {
         "document.querySelector('#plot-loop .scatterlayer path')",
     );
     // Two fits: one runs, the other waits.
-    browser.value(&tab, "document.querySelector('[name=levels]').value = '60'");
+    browser.value(&tab, "document.querySelector('[name=levels]').value = '50'");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.wait(
@@ -539,7 +539,7 @@ fn two_pages_show_the_same_and_a_fit_is_cancelled() {
         &two,
         "document.querySelector('#files h3')?.textContent === 'wave.csv'",
     );
-    browser.value(&one, "document.querySelector('[name=levels]').value = '60'");
+    browser.value(&one, "document.querySelector('[name=levels]').value = '50'");
     browser.value(&one, "document.querySelector('#begin').click()");
     browser.wait(&two, "document.querySelector('#jobs button')");
     browser.value(&two, "document.querySelector('#jobs button').click()");
