@@ -166,6 +166,21 @@ pub struct Safety {
     pub stuck_s: Option<f64>,
 }
 
+impl Safety {
+    /// The defaults of `lost_s` and `stuck_s` at a sample time, s.
+    ///
+    /// ```
+    /// use hysteron_bench::Safety;
+    /// assert_eq!(Safety::usual(0.05), (0.5, 1.0));
+    /// assert_eq!(Safety::usual(1.0), (5.0, 5.0)); // a few samples at least
+    /// ```
+    #[must_use]
+    pub fn usual(dt: f64) -> (f64, f64) {
+        let few = 5.0 * dt;
+        (f64::max(0.5, few), f64::max(1.0, few))
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Numbers {

@@ -1,6 +1,6 @@
 //! What a run does with the device that answered: limits, controller, learner.
 
-use crate::config::{Config, ControllerOptions, Mode, Tuning};
+use crate::config::{Config, ControllerOptions, Mode, Safety, Tuning};
 use crate::error::{Error, Result};
 use crate::learner::Beside;
 use crate::play::{Course, refuse_empty};
@@ -90,8 +90,8 @@ impl Plan {
             );
             return Err(config.refused("limits.drive", what));
         }
-        let (half, few) = (0.5, 5.0 * header.dt);
-        let lost_s = config.safety.lost_s.unwrap_or(f64::max(half, few));
+        let (usual_lost_s, usual_stuck_s) = Safety::usual(header.dt);
+        let lost_s = config.safety.lost_s.unwrap_or(usual_lost_s);
         if lost_s < 1.5 * header.dt {
             let what = format!(
                 "{lost_s} s is less than one and a half samples of the device ({} s): every sample \
@@ -121,7 +121,7 @@ impl Plan {
             drives,
             outputs: config.limits.output,
             lost_s,
-            stuck_s: config.safety.stuck_s.unwrap_or(f64::max(1.0, few)),
+            stuck_s: config.safety.stuck_s.unwrap_or(usual_stuck_s),
             end_s: config.duration_s.or(course_end),
             course: sources.course,
             ahead,

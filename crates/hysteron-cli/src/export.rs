@@ -7,12 +7,6 @@ use hysteron::{Model, Remedy, Setting};
 use hysteron_export::{ArduinoOptions, CControl, COptions, CSampling, Fmu, FmuOptions};
 use serde_json::json;
 
-/// Without a reading for so long, or for so many samples, a loop on the target goes safe; and with
-/// one that stands still. As of `run`.
-const LOST_S: f64 = 0.5;
-const STUCK_S: f64 = 1.0;
-const FEW: f64 = 5.0;
-
 pub(crate) fn run(args: &args::Export) -> Result<()> {
     match args {
         args::Export::C(args) => c(args),
@@ -185,9 +179,11 @@ fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> 
             tuned.map_err(untuned)?.gains
         }
     });
+    // As of `run`.
+    let (lost_s, stuck_s) = hysteron_bench::Safety::usual(dt);
     Ok(CControl {
-        lost_s: LOST_S.max(FEW * dt),
-        stuck_s: STUCK_S.max(FEW * dt),
+        lost_s,
+        stuck_s,
         scheme,
     })
 }

@@ -2,10 +2,11 @@
 //! Prints the tables of `docs/fleet.md`:
 //! `cargo run --release -p hysteron-measure -- fleet-choice [COUNT [LEVELS]]`
 
+use crate::material::{FINE, RANGE, bell};
 use crate::result::Result;
 use hysteron::{
     Columns, Destination, Fit, FleetChoice, FleetFitted, FleetOptions, Model, Operator, Plane,
-    Progress, Sign, fit_fleet, operators, read_fleet,
+    Progress, Sign, fit_fleet, read_fleet,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -15,10 +16,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Levels of the relays of an actuator: finer than a fit sees.
-const FINE: usize = 80;
-/// Range of the input.
-const RANGE: (f64, f64) = (20.0, 90.0);
 /// Samples of a recording.
 const SAMPLES: usize = 500;
 /// Harm to an actuator is an error of so many times that of its own choice.
@@ -205,17 +202,7 @@ fn record(kind: &Kind, rng: &mut ChaCha8Rng) -> Result<(Vec<f64>, Vec<f64>)> {
     let (spread, width) = (near(kind.spread, 0.12), near(kind.width, 0.15));
     let (stroke, offset) = (near(10.0, 0.08), near(2.0, 0.1));
     let plane = Plane::new(RANGE.0, RANGE.1, FINE)?;
-    let level = |n: usize| RANGE.0 + (n as f64 - 0.5) * (RANGE.1 - RANGE.0) / FINE as f64;
-    let density = operators(FINE).map(|(i, j)| {
-        let (middle, half) = (
-            (0.5 * (level(i) + level(j)) - middle) / spread,
-            (0.5 * (level(j) - level(i)) - half) / width,
-        );
-        (-0.5 * (middle * middle + half * half)).exp()
-    });
-    let density: Vec<f64> = density.collect();
-    let all: f64 = density.iter().sum();
-    let weights = density.iter().map(|d| 0.5 * stroke * d / all).collect();
+    let weights = bell((middle, spread), (half, width), stroke);
     let material = Model::new(Operator::Mkp, plane, weights, offset, Sign::Positive)?;
     let begin = if kind.begins_inside { 0.35 } else { 0.0 };
     let input: Vec<f64> = (0..SAMPLES)

@@ -1,8 +1,9 @@
 //! What a fleet tells about the next actuator, on **simulated** actuators. Prints
 //! `docs/measured/fleet-prior.md`: `cargo run --release -p hysteron-measure -- fleet-prior`
 
+use crate::material::{FINE, RANGE, bell};
 use crate::result::Result;
-use hysteron::{Fit, Model, Operator, Plane, Recording, Sign, Spacing, WeightPrior, operators};
+use hysteron::{Fit, Model, Operator, Plane, Recording, Sign, Spacing, WeightPrior};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -12,12 +13,8 @@ use std::sync::Arc;
 const FLEETS: [usize; 3] = [12, 40, 200];
 /// Actuators that are not of the fleet.
 const TESTED: usize = 24;
-/// Levels of the relays of an actuator: finer than a fit sees.
-const FINE: usize = 80;
 /// Levels of the fits.
 const LEVELS: usize = 20;
-/// Range of the input.
-const RANGE: (f64, f64) = (20.0, 90.0);
 /// Samples of a recording.
 const SAMPLES: usize = 500;
 /// Shares of the recording that are known of the next actuator.
@@ -87,17 +84,7 @@ fn record(rng: &mut ChaCha8Rng) -> Result<Recording> {
     let (spread, width) = (near(5.0, 0.6).max(2.0), near(2.5, 0.4).max(1.0));
     let (stroke, offset) = (near(10.0, 0.8), near(2.0, 0.3));
     let plane = Plane::new(RANGE.0, RANGE.1, FINE)?;
-    let level = |n: usize| RANGE.0 + (n as f64 - 0.5) * (RANGE.1 - RANGE.0) / FINE as f64;
-    let density = operators(FINE).map(|(i, j)| {
-        let (middle, half) = (
-            (0.5 * (level(i) + level(j)) - middle) / spread,
-            (0.5 * (level(j) - level(i)) - half) / width,
-        );
-        (-0.5 * (middle * middle + half * half)).exp()
-    });
-    let density: Vec<f64> = density.collect();
-    let all: f64 = density.iter().sum();
-    let weights = density.iter().map(|d| 0.5 * stroke * d / all).collect();
+    let weights = bell((middle, spread), (half, width), stroke);
     let offset = offset + 0.5 * stroke;
     let material = Model::new(Operator::Relay, plane, weights, offset, Sign::Positive)?;
     let input: Vec<f64> = (0..SAMPLES)

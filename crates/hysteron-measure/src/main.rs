@@ -16,6 +16,7 @@ mod instructions;
 mod judged;
 mod leaderboard;
 mod loads;
+mod material;
 mod modules;
 mod profiles;
 mod recordings;

@@ -1,7 +1,8 @@
 //! What is drawn besides lines, samples that are pointed at, and the archive of C.
 #![cfg(feature = "server")]
 
-use hysteron_studio::{Fault, Id, Response, Session};
+use crate::asked::ask;
+use hysteron_studio::{Id, Session};
 use serde_json::{Value, json};
 use std::io::Read;
 use std::process::{Command, Stdio};
@@ -23,17 +24,6 @@ fn table() -> String {
         text += &format!("{},{t},{read}\n", f64::from(n) * 0.1);
     }
     text
-}
-
-fn ask(session: &mut Session, request: Value) -> Result<Value, Fault> {
-    let answer = session.handle(serde_json::from_value(request).unwrap())?;
-    if let Some(job) = answer.job {
-        return Ok(json!(session.finish(job.run())?));
-    }
-    if let Response::Taken(taken) = answer.response {
-        return Ok(json!({ "bytes": taken.bytes }));
-    }
-    Ok(serde_json::to_value(answer.response).unwrap())
 }
 
 fn fitted(options: Value) -> (Session, Id, Id) {

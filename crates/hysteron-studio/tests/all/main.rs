@@ -1,6 +1,8 @@
 //! The tests of this crate: one program, since every program is linked with all dependencies.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "../common/asked.rs"]
+mod asked;
 #[cfg(feature = "server")]
 #[path = "../common/chromium.rs"]
 mod chromium;

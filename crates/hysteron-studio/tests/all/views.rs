@@ -1,6 +1,7 @@
 //! What the views of the session show: parts of the loop, samples, preparations, paths, profiles.
 
-use hysteron_studio::{Fault, Id, Response, Session};
+use crate::asked::ask;
+use hysteron_studio::{Id, Session};
 use serde_json::{Value, json};
 
 /// A play of 4 degC with loops that shrink, a spike, and noise.
@@ -24,17 +25,6 @@ fn table(noise: f64) -> String {
         );
     }
     text
-}
-
-fn ask(session: &mut Session, request: Value) -> Result<Value, Fault> {
-    let answer = session.handle(serde_json::from_value(request).unwrap())?;
-    if let Some(job) = answer.job {
-        return Ok(json!(session.finish(job.run())?));
-    }
-    if let Response::Taken(taken) = answer.response {
-        return Ok(json!({ "bytes": taken.bytes }));
-    }
-    Ok(serde_json::to_value(answer.response).unwrap())
 }
 
 fn fitted(noise: f64) -> (Session, Id, Id) {
