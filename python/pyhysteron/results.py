@@ -442,6 +442,8 @@ class Confidence(_Result):
         such that the band holds 95 % of the samples that fits left out.
     sensor : float
         Standard deviation of the white noise of the readings, in the output's unit.
+    band_name : str
+        For what the band holds: '95 % band within its session' or '95 % band of 3 sessions'.
     branches : int
         Branches of the input.
     replicates : int
@@ -457,6 +459,7 @@ class Confidence(_Result):
     condition: float
     noise: float
     sensor: float
+    band_name: str
     branches: int
     replicates: int
 
@@ -664,11 +667,14 @@ class BandTest(_Result):
         Upper end, in the output's unit.
     coverage_percent : float
         Share of the measured samples inside, in percent.
+    name : str
+        For what it holds: '95 % band within its session' or '95 % band of 3 sessions'.
     """
 
     lower: _Array
     upper: _Array
     coverage_percent: float
+    name: str
 
 
 @dataclass(frozen=True, eq=False, repr=False)

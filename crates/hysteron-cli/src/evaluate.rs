@@ -136,8 +136,9 @@ fn to_text(evaluation: &Evaluation, recordings: &[Recording]) -> String {
     let mut result = text::table(&rows);
     if let Some(band) = &evaluation.band {
         result += &format!(
-            "\n{:.1} % of the samples inside the 95 % band",
-            band.coverage_percent
+            "\n{:.1} % of the samples inside the {}",
+            band.coverage_percent,
+            band.name()
         );
     }
     if let Some(samples) = evaluation.estimated_from {

@@ -83,10 +83,9 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
 
 /// For what sessions the band holds.
 pub(crate) fn sessions(confidence: &Confidence) -> String {
+    let name = confidence.band_name();
     match confidence.sessions {
-        0 | 1 => {
-            "the 95 % band holds within this session; --repeat FILE widens it to others".into()
-        }
-        sessions => format!("the 95 % band holds for {sessions} sessions"),
+        0 | 1 => format!("{name}: another may differ by more; --repeat FILE widens it"),
+        _ => name,
     }
 }

@@ -32,6 +32,7 @@ pub(crate) fn confidence<'py>(
     dict.set_item("condition", found.condition)?;
     dict.set_item("noise", found.noise)?;
     dict.set_item("sensor", found.sensor)?;
+    dict.set_item("band_name", found.band_name())?;
     dict.set_item("branches", found.branches)?;
     dict.set_item("replicates", found.replicates)?;
     Ok(Some(dict))
@@ -141,6 +142,7 @@ pub(crate) fn evaluate<'py>(
             let (lower, upper) = band.ends(&found.output_model);
             let dict = PyDict::new(py);
             dict.set_item("coverage_percent", band.coverage_percent)?;
+            dict.set_item("name", band.name())?;
             dict.set_item("lower", PyArray1::from_vec(py, lower))?;
             dict.set_item("upper", PyArray1::from_vec(py, upper))?;
             Some(dict)

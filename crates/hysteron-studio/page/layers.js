@@ -39,7 +39,7 @@ export function buttons(file, fit, changed) {
  * @param {[number, number] | null} height of the picture; outliers beyond it are drawn at its edge
  * @returns {[object[], object[]]} below the lines and above them
  */
-export function traces({ band, outliers }, place, height) {
+export function traces({ band, band_name, outliers }, place, height) {
   const below = [];
   if (band && on.has("band")) {
     const [low, high] = band.map(([x, y]) => pieces(x, y));
@@ -51,7 +51,7 @@ export function traces({ band, outliers }, place, height) {
       area.x.push(null);
       area.y.push(null);
     });
-    below.push({ ...area, mode: "lines", fill: "toself", fillcolor: tint(place), line: { width: 0 }, hoverinfo: "skip", name: "95 % band" });
+    below.push({ ...area, mode: "lines", fill: "toself", fillcolor: tint(place), line: { width: 0 }, hoverinfo: "skip", name: band_name });
   }
   const above = outliers.length > 0 && on.has("outliers")
     ? [{ x: outliers.map(([x]) => x), y: outliers.map(([, y]) => (height ? Math.min(height[1], Math.max(height[0], y)) : y)), mode: "markers", name: "outliers", marker: { symbol: "x-thin", size: 9, line: { width: 2, color: ink("bad") } } }]

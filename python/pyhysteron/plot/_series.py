@@ -117,7 +117,9 @@ def band(recording: Recording, model: Model, *, ax: Axes | None = None) -> Axes:
     ax = single(ax, wide=True)
     time, when = _time(recording)
     inside = 100 * np.mean((low <= recording.output) & (recording.output <= high))
-    ax.fill_between(time, low, high, color="0.78", linewidth=0, label="95 % band of the model", zorder=1)
+    known = model.confidence
+    name = known.band_name if known is not None else None
+    ax.fill_between(time, low, high, color="0.78", linewidth=0, label=name, zorder=1)
     measured = dict(MODELLED, linewidth=0.9)
     ax.plot(time, recording.output, label=f"{source(recording)}, {inside:.1f} % inside", **measured)
     ax.set(xlabel=when, ylabel=label(recording.output_name))

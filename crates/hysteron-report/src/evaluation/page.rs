@@ -170,7 +170,7 @@ fn certainty(confidence: &Confidence, view: &View<'_>) -> Markup {
         }
         @if let Some(band) = view.band() {
             tr {
-                th scope="row" { "95\u{a0}% band" }
+                th scope="row" { (band.name()) }
                 td { (percent(band.coverage_percent)) " of this recording inside" }
             }
         }

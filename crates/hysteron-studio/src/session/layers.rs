@@ -28,6 +28,8 @@ pub struct Layers {
     pub held: Vec<(f64, f64)>,
     /// The lower and the upper end of the fit's 95 % band.
     pub band: Option<[Points; 2]>,
+    /// What that band is called.
+    pub band_name: Option<String>,
     /// The samples that the fit took for outliers.
     pub outliers: Vec<(f64, f64)>,
 }
@@ -54,6 +56,9 @@ impl Session {
         layers.outliers = self.outliers(fit, view, seen)?;
         if let (Picture::Output, true) = (view.picture, view.band) {
             let half = self.half_width(fit, view.file)?;
+            let summary = self.fitted(fit)?.model.fit.as_ref();
+            let confidence = summary.and_then(|fit| fit.confidence.as_ref());
+            layers.band_name = confidence.map(hysteron::Confidence::band_name);
             let course = self.course(fit, view.file)?;
             layers.band = half.map(|half| {
                 let end = |sign: f64| seen.over_time(|n| course[n] + sign * half[n]);

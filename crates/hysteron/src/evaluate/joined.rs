@@ -133,6 +133,7 @@ pub(crate) fn over_all(
 }
 
 fn band(parts: &[Evaluation]) -> Option<BandEvaluation> {
+    let sessions = parts.first()?.band.as_ref()?.sessions;
     let (mut half_width, mut inside, mut samples) = (Vec::new(), 0.0, 0);
     for part in parts {
         let band = part.band.as_ref()?;
@@ -142,6 +143,7 @@ fn band(parts: &[Evaluation]) -> Option<BandEvaluation> {
     }
     Some(BandEvaluation {
         half_width,
+        sessions,
         coverage_percent: inside / samples as f64,
     })
 }

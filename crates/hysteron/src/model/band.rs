@@ -32,6 +32,7 @@ use serde::Serialize;
 pub struct Band {
     factors: Vec<Operators>,
     noise: f64,
+    sessions: usize,
 }
 
 impl Model {
@@ -92,6 +93,7 @@ impl Band {
         Ok(Self {
             factors: factors.map(factor).collect::<Result<_>>()?,
             noise: confidence.noise,
+            sessions: confidence.sessions,
         })
     }
 
@@ -139,6 +141,14 @@ impl Band {
     }
 }
 
+/// What the 95 % band of a model that knows so many sessions is called.
+pub(crate) fn band_name(sessions: usize) -> String {
+    match sessions {
+        0 | 1 => "95 % band within its session".into(),
+        sessions => format!("95 % band of {sessions} sessions"),
+    }
+}
+
 /// Samples of a block.
 const BLOCK: usize = 4096;
 
@@ -175,9 +185,18 @@ pub struct BandEvaluation {
     /// Share of the measured samples inside the band, in percent. About 95 if the recording is
     /// similar to those fitted.
     pub coverage_percent: f64,
+    /// Number of sessions that the band knows, as in [`Confidence::sessions`].
+    pub sessions: usize,
 }
 
 impl BandEvaluation {
+    /// What the band is called wherever it is drawn or written: a band of one session promises
+    /// nothing for another.
+    #[must_use]
+    pub fn name(&self) -> String {
+        band_name(self.sessions)
+    }
+
     /// Lower and upper end of the band around the modelled output.
     #[must_use]
     pub fn ends(&self, output_model: &[f64]) -> (Vec<f64>, Vec<f64>) {
@@ -205,6 +224,7 @@ impl BandEvaluation {
             .filter(|(y, (h, half))| (*y - *h).abs() <= **half)
             .count();
         Ok(Some(Self {
+            sessions: band.sessions,
             coverage_percent: 100.0 * inside as f64 / recording.len() as f64,
             half_width,
         }))

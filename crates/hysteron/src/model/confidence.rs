@@ -1,6 +1,7 @@
 //! How well the data determined the weights of a model. This part of the model file is written by a
 //! fit.
 
+use crate::model::band::band_name;
 use crate::model::excitation::Excitation;
 use crate::model::load::LoadPart;
 use serde::{Deserialize, Serialize};
@@ -78,6 +79,12 @@ impl Confidence {
                     format!("{value:e} is negative, not a number, or too large to be squared"),
                 )
             })
+    }
+
+    /// What the band is called, as by [`crate::BandEvaluation::name`].
+    #[must_use]
+    pub fn band_name(&self) -> String {
+        band_name(self.sessions)
     }
 
     /// Number of operators in a class.

@@ -37,6 +37,7 @@ mod within;
 
 pub use actuator::Model;
 pub(crate) use band::add_variance;
+pub(crate) use band::band_name;
 pub use band::{Band, BandEvaluation};
 pub use body::FirstOrder;
 pub(crate) use body::needs_time;

@@ -16,6 +16,13 @@ pub enum Cause {
     },
     /// A few numbers explain much of the error.
     Part(ErrorPart),
+    /// The model's band, which should hold 95 % of the samples, holds much less of them.
+    Elsewhere {
+        /// What it holds, in percent.
+        coverage: f64,
+        /// Number of sessions that the band knows.
+        sessions: usize,
+    },
     /// A simple predictor errs less.
     Rival {
         /// Its name.
@@ -44,14 +51,18 @@ pub enum Cause {
 
 /// More than this share of the inputs outside the plane, and the model is not for this recording.
 pub(super) const OUTSIDE: f64 = 0.2;
+/// A band that should hold 95 % and holds less than this, in percent, is of other recordings.
+/// Branches held out of recordings with enough of them keep above 90 (docs/measured/coverage.md).
+const BELONGS: f64 = 80.0;
 /// A part of this share is worth a sentence.
 const WORTH: f64 = 0.25;
 /// From this share of noise on, in the squared error, noise is what is behind it.
 const NOISY: f64 = 0.5;
 /// Fewer inputs outside the plane are the noise at its ends.
 const SEEN: f64 = 0.01;
-/// Fewer branches than this do not fill a plane, whatever their error says.
-const FEW: usize = 6;
+/// With fewer branches than this, one that is left out is often the only one of its kind, and its
+/// error and band do not hold for another recording (docs/measured/coverage.md).
+const FEW: usize = 8;
 
 impl Cause {
     /// Their weights: what weighs less than these may go unsaid.
@@ -70,6 +81,7 @@ impl Cause {
                 PartKind::Late => "late",
                 PartKind::Drift => "drift",
             },
+            Self::Elsewhere { .. } => "elsewhere",
             Self::Rival { .. } => "rival",
             Self::Noise { .. } => "noise",
             Self::FewBranches { .. } => "few_branches",
@@ -83,6 +95,7 @@ impl Cause {
             Self::Outside { share } if *share > OUTSIDE => 3.0,
             Self::Part(part) => 1.0 + part.share,
             Self::Rival { .. } => 0.9,
+            Self::Elsewhere { .. } => 0.85,
             Self::FewBranches { .. } => 0.8,
             Self::Outside { share } if *share > SEEN => 0.3,
             Self::Noise { .. } => Self::NOISE,
@@ -123,6 +136,15 @@ pub(super) fn outside(evaluation: &Evaluation) -> Option<Cause> {
     let samples = evaluation.forward.samples.max(1);
     let share = evaluation.clipped as f64 / samples as f64;
     (share > 0.0).then_some(Cause::Outside { share })
+}
+
+/// A recording that the model's band does not hold: the band is not for it.
+pub(super) fn elsewhere(evaluation: &Evaluation) -> Option<Cause> {
+    let band = evaluation.band.as_ref()?;
+    (band.coverage_percent < BELONGS).then_some(Cause::Elsewhere {
+        coverage: band.coverage_percent,
+        sessions: band.sessions,
+    })
 }
 
 /// Noise, or what the model cannot follow, whichever is more of an error `rmse`; `None` where the

@@ -169,6 +169,7 @@ impl Verdict {
         let run = (evaluation.forward, evaluation.was_fitted);
         let mut verdict = Self::of_run(recordings.as_ref(), &evaluation.output_model, run)?;
         verdict.causes.extend(cause::outside(evaluation));
+        verdict.causes.extend(cause::elsewhere(evaluation));
         verdict.inverse = of_inverse(evaluation);
         verdict.judge();
         Ok(verdict)

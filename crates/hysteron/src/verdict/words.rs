@@ -3,6 +3,7 @@
 use super::cause::OUTSIDE;
 use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
+use crate::model::band_name;
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
 use std::fmt;
@@ -77,7 +78,16 @@ impl Verdict {
             .rival
             .as_ref()
             .map(|(name, rival)| format!("; {name} errs {rival:.2} %"));
-        format!("{rmse}{percent} on {on}{}", rival.unwrap_or_default())
+        // Where a branch is the only one of its kind, leaving it out tells nothing of a new one.
+        let is_few = |cause: &Cause| matches!(cause, Cause::FewBranches { .. });
+        let within = match self.causes.iter().any(is_few) {
+            true => " within this recording, no promise for another",
+            false => "",
+        };
+        format!(
+            "{rmse}{percent} on {on}{within}{}",
+            rival.unwrap_or_default()
+        )
     }
 
     /// A cause in words.
@@ -87,6 +97,11 @@ impl Verdict {
             Cause::Outside { share } => format!(
                 "{:.1} % of the inputs are outside the range that the model knows",
                 100.0 * share
+            ),
+            Cause::Elsewhere { coverage, sessions } => format!(
+                "only {coverage:.1} % of the samples are inside the {}: it does not belong to \
+                 this recording",
+                band_name(*sessions)
             ),
             Cause::Rival { name, percent } => format!(
                 "{name} errs less ({percent:.2} %): the data do not determine the model, or it \

@@ -1,8 +1,8 @@
 //! The verdict on a model: faults of a known kind are named, and grades follow the error.
 
 use hysteron::{
-    Basis, Cause, Evaluation, Fit, Grade, HoldOut, Model, Operator, PartKind, Plane, Recording,
-    Sign, Verdict, error_parts, evaluate, fit_holding_out, forward,
+    Basis, Cause, Evaluation, Fit, FitOptions, Grade, HoldOut, Model, Operator, PartKind, Plane,
+    Recording, Sign, Verdict, error_parts, evaluate, fit_holding_out, forward,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -143,6 +143,33 @@ fn any_recording_gets_a_verdict() {
             evaluation.forward.max_abs
         );
         assert!(!verdict.to_string().contains("NaN"));
+    }
+}
+
+/// A model of one session says of another that its band is not for it; of its own, it says nothing.
+#[test]
+fn a_recording_that_the_band_does_not_hold_is_told() {
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let actuator = model(&weights(&mut rng));
+        let mut noisy = |offset: f64| {
+            let noise: Vec<f64> = (0..900).map(|_| rng.random_range(-0.2..0.2)).collect();
+            recording(&actuator, |n, y| y + offset + noise[n])
+        };
+        let (own, again, other) = (noisy(0.0), noisy(0.0), noisy(4.0));
+        let options = FitOptions {
+            levels: 12,
+            bootstrap: 30,
+            ..FitOptions::plain()
+        };
+        let fitted = Fit::from(&options).run(&own).unwrap();
+        let told = |recording| {
+            let (verdict, _) = judged(&fitted, recording);
+            let mut causes = verdict.causes.iter();
+            causes.any(|cause| matches!(cause, Cause::Elsewhere { sessions: 1, .. }))
+        };
+        assert!(!told(&again), "seed {seed}");
+        assert!(told(&other), "seed {seed}");
     }
 }
 

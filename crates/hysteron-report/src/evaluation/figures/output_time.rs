@@ -26,7 +26,7 @@ fn words(view: &View<'_>) -> Option<[String; 2]> {
     let (output, recorded) = (&view.output.name, view.recorded());
     let band = view.band().map_or(String::new(), |band| {
         let inside = percent(band.coverage_percent);
-        format!(" {inside} of them lie inside the 95\u{a0}% band.")
+        format!(" {inside} of them lie inside the {}.", band.name())
     });
     Some([
         format!("{output} over {}", view.time_label.name),

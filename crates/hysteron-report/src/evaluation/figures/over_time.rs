@@ -17,8 +17,8 @@ pub(super) fn measured_and_modelled(view: &View<'_>) -> Vec<Key> {
         Key::Line(MEASURED, view.recorded().into()),
         Key::Line(MODELLED, "modelled".into()),
     ];
-    if view.band().is_some() {
-        keys.push(Key::Area(BAND, "95 % band".into()));
+    if let Some(band) = view.band() {
+        keys.push(Key::Area(BAND, band.name()));
     }
     keys
 }
