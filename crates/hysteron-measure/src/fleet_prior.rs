@@ -2,6 +2,7 @@
 //! `docs/measured/fleet-prior.md`: `cargo run --release -p hysteron-measure -- fleet-prior`
 
 use crate::material::{FINE, RANGE, bell};
+use crate::median::median;
 use crate::result::Result;
 use hysteron::{Fit, Model, Operator, Plane, Recording, Sign, Spacing, WeightPrior};
 use rand::SeedableRng;
@@ -164,9 +165,4 @@ fn fitted_mean(mean: &Model, part: &Recording) -> Result<Model> {
     }
     best.map(|(_, model)| model)
         .ok_or_else(|| "no shift".into())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }

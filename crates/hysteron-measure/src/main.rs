@@ -17,6 +17,7 @@ mod judged;
 mod leaderboard;
 mod loads;
 mod material;
+mod median;
 mod modules;
 mod profiles;
 mod recordings;

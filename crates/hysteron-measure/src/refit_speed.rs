@@ -1,6 +1,7 @@
 //! Time of a sample of an adaptation, in a loop of 200 samples a cycle; medians:
 //! `cargo run --release -p hysteron-measure -- refit-speed`
 
+use crate::median::median;
 use crate::result::Result;
 use hysteron::{AdaptOptions, Learner, Model, Operator, Outcome, Plane, Sign};
 use std::time::Instant;
@@ -78,13 +79,8 @@ fn times(levels: usize, learner: Learner) -> hysteron::Result<Times> {
     }
     // The first cycles are not those of a loop that has run.
     Ok(Times {
-        mean: median(&mut cycles[2..]) / CYCLE as f64,
-        between: median(&mut between),
-        refit: median(&mut refits),
+        mean: median(cycles.split_off(2)) / CYCLE as f64,
+        between: median(between),
+        refit: median(refits),
     })
-}
-
-fn median(times: &mut [f64]) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }
