@@ -1,7 +1,7 @@
 //! The file beside a log: by it a later run knows the log, and goes on where it ended.
 
 use crate::error::{Result, of_file};
-use hysteron::{AtomicFile, Own};
+use hysteron_files::{AtomicFile, Own};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};

@@ -32,7 +32,10 @@ pub enum Error {
     /// Somebody stopped it before the device had said who it is.
     #[error("stopped before the device had said who it is")]
     Stopped,
-    /// A file cannot be read or written, or the library refused a model, a table or a controller.
+    /// A file cannot be written.
+    #[error(transparent)]
+    File(#[from] hysteron_files::Error),
+    /// A file cannot be read, or the library refused a model, a table or a controller.
     #[error(transparent)]
     Hysteron(#[from] hysteron::Error),
 }
@@ -40,7 +43,7 @@ pub enum Error {
 /// An error about a file.
 pub(crate) fn of_file(path: &std::path::Path, source: std::io::Error) -> Error {
     let path = path.to_owned();
-    hysteron::Error::File { path, source }.into()
+    hysteron_files::Error { path, source }.into()
 }
 
 fn at(line: Option<u64>) -> String {

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     if let Some(table) = &args.table {
-        hysteron::refuse_one_file(&args.out, table)?;
+        hysteron_files::refuse_one_file(&args.out, table)?;
         if args.json.json && table.as_os_str() == "-" {
             return Err(
                 "with --json standard output has the JSON object only: name a file for --table"

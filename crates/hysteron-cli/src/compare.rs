@@ -3,7 +3,8 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, remedy, text};
-use hysteron::{AtomicFolder, Columns, Forward, Model, Recording, Verdict, one_after_the_other};
+use hysteron::{Columns, Forward, Model, Recording, Verdict, one_after_the_other};
+use hysteron_files::AtomicFolder;
 use hysteron_report::{NamedForward, Report, Shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,8 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print};
 use crate::{args, evaluate, text};
-use hysteron::{AtomicFolder, Errors, InverseRun};
+use hysteron::{Errors, InverseRun};
+use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use hysteron_sim::rig::{Experiment, Reproduction};
 use serde_json::json;

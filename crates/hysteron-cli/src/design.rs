@@ -3,16 +3,16 @@
 use crate::terminal::{Result, print};
 use crate::{args, text};
 use hysteron::{
-    AtomicFile, Design, DesignOptions, Excitation, Own, Plane, Quantity, Rates, TableReader,
-    TableWriter,
+    Design, DesignOptions, Excitation, Plane, Quantity, Rates, TableReader, TableWriter,
 };
+use hysteron_files::{AtomicFile, Own};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Design) -> Result<()> {
     let (min, max) = args.range;
     if let Some(figure) = &args.figure {
-        hysteron::refuse_one_file(&args.out, figure)?;
+        hysteron_files::refuse_one_file(&args.out, figure)?;
     }
     let to_stdout = args.out == Path::new("-");
     if to_stdout && args.json.json {
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     }
     let summary = summary(&design, args);
     if to_stdout {
-        eprintln!("{}", hysteron::printable(&summary));
+        eprintln!("{}", hysteron_files::printable(&summary));
         return Ok(());
     }
     print(&summary)

@@ -3,9 +3,8 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, prepare, recording, text};
-use hysteron::{
-    AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording, Verdict,
-};
+use hysteron::{Columns, Errors, Evaluation, InverseRun, Quantity, Recording, Verdict};
+use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
 use std::borrow::Cow;

@@ -4,9 +4,9 @@ use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, fit, prepare, progress, remedy, text};
 use hysteron::{
-    AtomicFolder, Columns, FleetOptions, FleetRow, Model, Norm, Progress, Strangeness, fit_fleet,
-    read_fleet,
+    Columns, FleetOptions, FleetRow, Model, Norm, Progress, Strangeness, fit_fleet, read_fleet,
 };
+use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,7 @@ impl Typed {
     /// It is no such number.
     pub(crate) fn now() -> Result<Self, String> {
         let words = std::env::args_os().skip(1);
-        let words = words.map(|word| hysteron::shell_word(&word.to_string_lossy()));
+        let words = words.map(|word| hysteron_files::shell_word(&word.to_string_lossy()));
         let command: Vec<String> = std::iter::once("hysteron".to_owned())
             .chain(words)
             .collect();

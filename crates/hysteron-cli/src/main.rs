@@ -46,7 +46,7 @@ fn main() -> ExitCode {
         if run::stop() {
             return;
         }
-        hysteron::discard_unfinished();
+        hysteron_files::discard_unfinished();
         std::process::exit(130);
     });
     let done = match usage::parse().command {
@@ -110,9 +110,14 @@ fn advice(error: &(dyn Error + 'static)) -> &'static str {
 
 /// The file that an error is about, and what kind of fault it is.
 fn of_file<'a>(error: &'a (dyn Error + 'static)) -> Option<(&'a Path, ErrorKind)> {
-    causes(error).find_map(|cause| match cause.downcast_ref::<hysteron::Error>() {
-        Some(hysteron::Error::File { path, source }) => Some((path.as_path(), source.kind())),
-        _ => None,
+    causes(error).find_map(|cause| {
+        let (path, source) = match cause.downcast_ref() {
+            Some(hysteron::Error::File { path, source }) => (path, source),
+            _ => cause
+                .downcast_ref()
+                .map(|hysteron_files::Error { path, source }| (path, source))?,
+        };
+        Some((path.as_path(), source.kind()))
     })
 }
 

@@ -1,7 +1,8 @@
 //! Models from files.
 
 use crate::terminal::Result;
-use hysteron::{Model, shell_word};
+use hysteron::Model;
+use hysteron_files::shell_word;
 use std::path::Path;
 
 /// The model of a command that takes a model, then a recording.

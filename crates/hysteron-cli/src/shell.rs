@@ -5,7 +5,8 @@ use crate::args;
 use crate::terminal::{Result, print};
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
-use hysteron::{AtomicFolder, Error};
+use hysteron::Error;
+use hysteron_files::AtomicFolder;
 use std::io::Write;
 use std::path::PathBuf;
 

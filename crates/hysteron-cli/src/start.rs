@@ -4,8 +4,9 @@ use crate::terminal::{Result, Unclear, print, say};
 use crate::{args, hold_out, progress, recording, remedy, text};
 use hysteron::{
     Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, Roles,
-    TableReader, Verdict, fit_holding_out, shell_word,
+    TableReader, Verdict, fit_holding_out,
 };
+use hysteron_files::shell_word;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::error::Error;

@@ -20,7 +20,10 @@ impl Error for Unclear {}
 
 /// Tells a person something, on standard error.
 pub(crate) fn say(message: std::fmt::Arguments<'_>) {
-    eprintln!("hysteron: {}", hysteron::printable(&message.to_string()));
+    eprintln!(
+        "hysteron: {}",
+        hysteron_files::printable(&message.to_string())
+    );
 }
 
 /// What every error begins with, wrong usage too.
@@ -28,12 +31,12 @@ pub(crate) const ERROR: &str = "hysteron: error: ";
 
 /// Tells a person why the command failed.
 pub(crate) fn fail(message: std::fmt::Arguments<'_>) {
-    eprintln!("{ERROR}{}", hysteron::printable(&message.to_string()));
+    eprintln!("{ERROR}{}", hysteron_files::printable(&message.to_string()));
 }
 
 /// Prints to standard output for people, or JSON; an error there is returned, not a panic.
 pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{}", hysteron::printable(text))?;
+    writeln!(out, "{}", hysteron_files::printable(text))?;
     Ok(out.flush()?)
 }

@@ -3,7 +3,8 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, progress, text};
-use hysteron::{AtomicFile, AtomicFolder, Own, Progress, Quantity};
+use hysteron::{Progress, Quantity};
+use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 use serde_json::json;
 use std::path::Path;

@@ -32,8 +32,8 @@ pub(crate) fn parse() -> Cli {
         let text = error.to_string();
         // A message may repeat the arguments, so control characters are escaped as in others.
         match text.strip_prefix("error: ") {
-            Some(text) => eprint!("{ERROR}{}", hysteron::printable(text)),
-            None => eprint!("{}", hysteron::printable(&text)),
+            Some(text) => eprint!("{ERROR}{}", hysteron_files::printable(text)),
+            None => eprint!("{}", hysteron_files::printable(&text)),
         }
         std::process::exit(error.exit_code())
     })
@@ -134,7 +134,7 @@ fn is_file(word: &str) -> bool {
 }
 
 fn first_a_command(command: &Command, word: &str) -> String {
-    let file = hysteron::shell_word(word);
+    let file = hysteron_files::shell_word(word);
     let is_model = Path::new(word).extension().is_some_and(|end| end == "json");
     match (command.get_name(), is_model) {
         ("hysteron", true) => format!("`hysteron inspect {file}` shows what is in a model"),

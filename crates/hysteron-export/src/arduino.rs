@@ -5,7 +5,8 @@ mod texts;
 
 use crate::c::{CControl, CExport, COptions, CReal, CSampling, c_texts_controlled};
 pub use board::{Board, BoardMemory};
-use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
+use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
+use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use std::path::{Path, PathBuf};
 
 /// How to write a model as a library for Arduino.

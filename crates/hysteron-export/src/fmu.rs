@@ -12,7 +12,8 @@ mod staged;
 mod units;
 mod variables;
 
-use hysteron::{AtomicFile, Destination, Error, Model, Own, Remedy, Result, Setting};
+use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
+use hysteron_files::{AtomicFile, Own};
 pub use options::{Fmi, FmuOptions};
 use sha2::{Digest, Sha256};
 

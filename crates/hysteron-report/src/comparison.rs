@@ -4,7 +4,8 @@ use crate::error::ReportError;
 use crate::made::Made;
 use crate::report::{Report, Shown};
 use crate::track::{NamedTrace, TrackTable, Tracking};
-use hysteron::{AtomicFolder, Quantity};
+use hysteron::Quantity;
+use hysteron_files::AtomicFolder;
 use hysteron_sim::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
 

@@ -82,7 +82,7 @@ pub enum ReportError {
     },
     /// A file or the directory could not be written.
     #[error(transparent)]
-    Write(#[from] hysteron::Error),
+    Write(#[from] hysteron_files::Error),
     /// A figure could not be turned into pixels.
     #[error("cannot draw {}: {reason}", path.display())]
     Raster {

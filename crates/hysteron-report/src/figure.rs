@@ -2,7 +2,7 @@
 
 use crate::draw::sheet::{Drawing, Sheet};
 use crate::number::capitalised;
-use hysteron::printable;
+use hysteron_files::printable;
 
 /// A figure of what the view `V` holds.
 pub(crate) struct Figure<V> {

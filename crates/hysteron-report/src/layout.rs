@@ -4,7 +4,7 @@ use crate::figure::{Drawn, Figure};
 use crate::linked;
 use crate::made::Made;
 use crate::subject::{Section, Subject};
-use hysteron::printable;
+use hysteron_files::printable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");

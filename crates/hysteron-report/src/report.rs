@@ -6,8 +6,9 @@ use crate::made::Made;
 use crate::models::NamedForward;
 use crate::track::Tracking;
 use crate::{evaluation, fleet, models, png, track};
-use hysteron::{AtomicFile, AtomicFolder, Destination, Own};
+use hysteron::Destination;
 use hysteron::{Evaluation, FleetRow, Model, Norm, Recording};
+use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use std::path::{Path, PathBuf};
 
 /// Figures and a page of what is [`Shown`].

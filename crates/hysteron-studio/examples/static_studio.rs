@@ -3,7 +3,7 @@
 //!
 //! `static_studio FOLDER SESSION.wasm`
 
-use hysteron::{AtomicFile, AtomicFolder, Own};
+use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use hysteron_studio::{STATIC_SESSION, static_page};
 use std::path::PathBuf;
 

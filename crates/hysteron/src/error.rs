@@ -116,6 +116,26 @@ pub enum Error {
     },
 }
 
+#[cfg(feature = "files")]
+impl From<hysteron_files::Error> for Error {
+    fn from(hysteron_files::Error { path, source }: hysteron_files::Error) -> Self {
+        Self::File { path, source }
+    }
+}
+
+#[cfg(feature = "files")]
+impl hysteron_files::OfFile for Error {
+    fn placed(self, at: &std::path::Path) -> Self {
+        match self {
+            Self::File { source, .. } => Self::File {
+                path: at.to_owned(),
+                source,
+            },
+            other => other,
+        }
+    }
+}
+
 impl Error {
     /// A number for each kind of error. It never changes. The codes of the core are below 20. A lane
     /// of a batch has the code of its error.

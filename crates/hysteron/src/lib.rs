@@ -60,17 +60,12 @@ pub use data::{
     Added, Around, Budget, Column, ColumnSummary, Columns, Counts, Growing, Invert, Memory, Note,
     NoteKind, Others, PICTURE, Places, ReadOptions, Remark, Repair, RoleDoubt, Roles, Row,
     STANDARD_OUTPUT, Segment, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
-    inspect_table, invert_table, preview_table, preview_table_knowing, printable, python_literal,
-    shell_word, simulate_table,
+    inspect_table, invert_table, preview_table, preview_table_knowing, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{
     Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_errors, evaluate_from,
-};
-#[cfg(feature = "files")]
-pub use files::{
-    AtomicFile, AtomicFolder, Destination, Locked, Own, discard_unfinished, refuse_one_file,
 };
 #[cfg(feature = "data")]
 pub use fleet::{
@@ -84,6 +79,8 @@ pub use hysteron_core::{
     Adaptation, Channel, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator,
     Outcome, Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
+#[cfg(feature = "files")]
+pub use hysteron_files::Destination;
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
     FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, WeightPrior, advice, cross_validate,

@@ -4,7 +4,7 @@ use super::plot::{Plot, Words};
 use super::shape::{Anchor, Rect, Short, rect_data};
 use super::style::{INK, Stroke};
 use super::text::FAMILIES;
-use hysteron::printable;
+use hysteron_files::printable;
 use std::borrow::Cow;
 use std::fmt::Write;
 

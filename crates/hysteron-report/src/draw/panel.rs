@@ -8,7 +8,7 @@ use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
 use super::text;
 use crate::decimate;
 use crate::quantity::Labelled;
-use hysteron::printable;
+use hysteron_files::printable;
 
 /// Space below a panel for tick labels and the axis label.
 pub(crate) const BELOW: f64 = 46.0;

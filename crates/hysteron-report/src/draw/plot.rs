@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::shape::{Anchor, Rect};
 use super::style::Stroke;
-use hysteron::printable;
+use hysteron_files::printable;
 use serde::Serialize;
 
 /// Samples of a line that a page holds, at most about so many; of a band, up to twice as many.

@@ -6,7 +6,7 @@ use super::plot::{Plot, Words};
 use super::shape::{Anchor, Rect};
 use super::style::{AXIS, FAINT, INK, LABEL, Stroke, TITLE};
 use super::text;
-use hysteron::printable;
+use hysteron_files::printable;
 
 /// Space around everything.
 pub(crate) const MARGIN: f64 = 14.0;

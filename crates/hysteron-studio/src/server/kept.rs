@@ -1,7 +1,8 @@
 //! The file that keeps the session: one studio at a time, and nothing of others is replaced.
 
 use crate::{Fault, Session};
-use hysteron::{AtomicFile, Error, Locked, Own};
+use hysteron::Error;
+use hysteron_files::{AtomicFile, Locked, Own};
 use std::fs::{File, Metadata};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};

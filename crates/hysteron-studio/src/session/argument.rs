@@ -1,6 +1,6 @@
 //! Arguments of the command, as a shell reads them.
 
-use hysteron::shell_word;
+use hysteron_files::shell_word;
 
 /// An option and its value. A value that begins with a hyphen is no option.
 pub(super) fn option(name: &str, value: &str) -> String {

@@ -8,7 +8,8 @@ use super::opened::Opened;
 use super::prepare::Steps;
 use super::state::Session;
 use super::wish::Wish;
-use hysteron::{Operator, Plane, python_literal};
+use hysteron::{Operator, Plane};
+use hysteron_files::python_literal;
 
 /// The files of a fit that are still open.
 fn files<'s>(session: &'s Session, ids: &[Id]) -> Vec<&'s Opened> {

@@ -97,6 +97,12 @@ pub(crate) fn spelt(setting: &Setting) -> String {
     }
 }
 
+impl From<hysteron_files::Error> for Fault {
+    fn from(error: hysteron_files::Error) -> Self {
+        Error::from(error).into()
+    }
+}
+
 impl From<Error> for Fault {
     fn from(error: Error) -> Self {
         let (plain, remedy) = error.parts();
@@ -104,7 +110,7 @@ impl From<Error> for Fault {
             remedy: remedy.map(|remedy| remedy.spelt(spelt)),
             ..Self::new(
                 error.code(),
-                hysteron::printable(&plain.to_string()).into_owned(),
+                hysteron_files::printable(&plain.to_string()).into_owned(),
             )
         }
     }

@@ -354,7 +354,7 @@ fn prepared(
 /// The last part of a path, safe to show.
 pub(super) fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    let last: String = hysteron::printable(last).chars().take(200).collect();
+    let last: String = hysteron_files::printable(last).chars().take(200).collect();
     match last.trim() {
         "" | "-" => "recording.csv".into(),
         name => name.into(),

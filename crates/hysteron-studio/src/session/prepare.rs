@@ -2,7 +2,8 @@
 
 use super::argument::option;
 use super::fault::Fault;
-use hysteron::{PrepareOptions, Step, python_literal};
+use hysteron::{PrepareOptions, Step};
+use hysteron_files::python_literal;
 use serde::{Deserialize, Serialize};
 
 /// The steps of a preparation, each `auto`, `off` or a number: [`hysteron::PrepareOptions`].

@@ -1,11 +1,10 @@
-//! Reads and writes tables, recordings and results (feature `data`), through `crate::files`.
+//! Reads and writes tables, recordings and results (feature `data`), through `hysteron_files`.
 //!
 //! `table` reads CSV, Parquet, Arrow and MATLAB files. `recording` turns their columns into recordings.
 //! `output` writes tables. `cells` writes cells as CSV.
 //! `positions` keeps where rows are. `run` simulates and inverts tables, a block of rows at a time.
 //! `design`, `adapted` and `trace` read and write what their names say. `columns` summarises
-//! a table, `preview` shows it, `roles` finds what its columns are, and `printable` makes text safe to show and to
-//! paste.
+//! a table, `preview` shows it, and `roles` finds what its columns are.
 
 mod adapted;
 mod cells;
@@ -14,7 +13,6 @@ mod design;
 mod output;
 mod positions;
 mod preview;
-mod printable;
 mod recording;
 mod roles;
 mod run;
@@ -25,7 +23,6 @@ pub use columns::{ColumnSummary, TableSummary, inspect_table};
 pub use output::{Added, STANDARD_OUTPUT, TableWriter};
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
 pub use preview::{PICTURE, TablePreview, preview_table, preview_table_knowing};
-pub use printable::{printable, python_literal, shell_word};
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair, Segment};
 pub(crate) use recording::{Group, Groups};
 pub use roles::{RoleDoubt, Roles};

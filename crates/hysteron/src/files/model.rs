@@ -1,8 +1,9 @@
 //! Reads and writes model files.
 
-use super::{AtomicFile, Destination, Own, begins_as_model, begins_with};
+use super::{begins_as_model, head::begins_with};
 use crate::error::{Error, Result};
 use crate::model::{Model, no_model};
+use hysteron_files::{AtomicFile, Destination, Own};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -47,7 +48,7 @@ impl Model {
     /// # Errors
     /// [`Error::File`].
     pub fn write<'a>(&self, target: impl Into<Destination<'a>>) -> Result<()> {
-        Self::file(target)?.commit_with(self.to_json().as_bytes())
+        Ok(Self::file(target)?.commit_with(self.to_json().as_bytes())?)
     }
 
     /// Opens the file of a model that is not identified yet. So a path that cannot be written is
@@ -56,7 +57,7 @@ impl Model {
     /// # Errors
     /// [`Error::File`].
     pub fn file<'a>(target: impl Into<Destination<'a>>) -> Result<AtomicFile> {
-        AtomicFile::create(target, Own::Marked(is_our_model))
+        Ok(AtomicFile::create(target, Own::Marked(is_our_model))?)
     }
 }
 

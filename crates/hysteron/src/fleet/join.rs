@@ -3,7 +3,7 @@
 use super::row::COLUMNS;
 use crate::data::{RecordWriter, Value, read_records};
 use crate::error::{Error, Result};
-use crate::files::Destination;
+use hysteron_files::Destination;
 use std::collections::HashMap;
 use std::path::PathBuf;
 

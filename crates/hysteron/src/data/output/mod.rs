@@ -1,4 +1,4 @@
-//! Writes tables and records, into files that appear complete or not at all (`crate::files`).
+//! Writes tables and records, into files that appear complete or not at all (`hysteron_files`).
 //!
 //! `table` writes tables, `added` is what commands add to them; `csv` writes them as text;
 //! `columnar` writes columns as Parquet (`parquet`) or Arrow (`arrow`), `spool` keeps rows until

@@ -7,7 +7,7 @@
 
 use super::{Kind, Value};
 use crate::error::{Error, Result};
-use crate::files::Locked;
+use hysteron_files::Locked;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fs::OpenOptions;

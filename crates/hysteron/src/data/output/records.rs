@@ -5,7 +5,7 @@ use super::parquet::{io_error, properties};
 use crate::data::output::sign::is_our_table;
 use crate::data::table::caught;
 use crate::error::{Error, Result};
-use crate::files::{AtomicFile, Destination, Own};
+use hysteron_files::{AtomicFile, Destination, Own};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -136,7 +136,7 @@ impl RecordWriter {
             self.end_group()?;
         }
         match self.writer.into_inner() {
-            Ok(file) => file.commit(),
+            Ok(file) => Ok(file.commit()?),
             Err(error) => Err(Error::File {
                 path: self.path,
                 source: io_error(error),

@@ -11,7 +11,7 @@ use super::parquet::Kind;
 use super::table::Sink;
 use crate::data::cells::push_row;
 use crate::data::table::{Block, Growing, Memory, Splitter};
-use crate::files::bare;
+use hysteron_files::bare;
 use std::collections::HashSet;
 use std::fs::File;
 use std::hash::Hash;

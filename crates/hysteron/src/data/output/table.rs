@@ -9,7 +9,7 @@ use super::splice::{Original, Splice};
 use super::spool::Spool;
 use crate::data::table::{Block, Growing, Memory, TableReader};
 use crate::error::{Error, Result};
-use crate::files::{AtomicFile, Destination, Own, folder_of};
+use hysteron_files::{AtomicFile, Destination, Own, folder_of};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -293,7 +293,7 @@ impl TableWriter {
     /// [`Error::File`].
     pub fn finish(self) -> Result<()> {
         match self.end()? {
-            Some(Sink::File(file)) => file.commit(),
+            Some(Sink::File(file)) => Ok(file.commit()?),
             Some(Sink::Stdout(_) | Sink::Memory(_)) | None => Ok(()),
         }
     }

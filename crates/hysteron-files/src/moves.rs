@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The moves done so far.
-pub(super) struct Moves {
+pub(crate) struct Moves {
     /// The folder where old files are kept until all moves are done.
     aside: PathBuf,
     done: Vec<Move>,
@@ -22,7 +22,7 @@ enum Move {
 
 impl Moves {
     /// Creates the folder `aside`, where old files will be kept.
-    pub(super) fn new(aside: PathBuf) -> io::Result<Self> {
+    pub(crate) fn new(aside: PathBuf) -> io::Result<Self> {
         fs::create_dir(&aside)?;
         Ok(Self {
             aside,
@@ -31,7 +31,7 @@ impl Moves {
     }
 
     /// Moves a file or folder to a free place.
-    pub(super) fn place(&mut self, from: &Path, to: &Path) -> io::Result<()> {
+    pub(crate) fn place(&mut self, from: &Path, to: &Path) -> io::Result<()> {
         fs::rename(from, to)?;
         self.done.push(Move::Placed {
             from: from.to_owned(),
@@ -41,7 +41,7 @@ impl Moves {
     }
 
     /// Exchanges two folders in a single step. Fails if the system cannot do this.
-    pub(super) fn exchange(&mut self, one: &Path, other: &Path) -> io::Result<()> {
+    pub(crate) fn exchange(&mut self, one: &Path, other: &Path) -> io::Result<()> {
         exchange(one, other)?;
         self.done.push(Move::Exchanged {
             one: one.to_owned(),
@@ -51,13 +51,13 @@ impl Moves {
     }
 
     /// Replaces a file by another in a single step.
-    pub(super) fn replace(&mut self, new: &Path, place: &Path) -> io::Result<()> {
+    pub(crate) fn replace(&mut self, new: &Path, place: &Path) -> io::Result<()> {
         self.keep(place)?;
         fs::rename(new, place)
     }
 
     /// Removes a file, which is kept aside.
-    pub(super) fn remove(&mut self, place: &Path) -> io::Result<()> {
+    pub(crate) fn remove(&mut self, place: &Path) -> io::Result<()> {
         self.keep(place)?;
         fs::remove_file(place)
     }
@@ -76,7 +76,7 @@ impl Moves {
     }
 
     /// Undoes all moves, the last one first.
-    pub(super) fn undo(self) {
+    pub(crate) fn undo(self) {
         for done in self.done.into_iter().rev() {
             // Ignore errors here: the error that caused the undo is the one to report.
             let _ = match done {

@@ -65,11 +65,11 @@ impl<'a> Destination<'a> {
         self.path
     }
 
-    pub(super) fn inputs(&self) -> &'a [&'a Path] {
+    pub(crate) fn inputs(&self) -> &'a [&'a Path] {
         self.inputs
     }
 
-    pub(super) fn keeps_foreign(&self) -> bool {
+    pub(crate) fn keeps_foreign(&self) -> bool {
         self.keep_foreign
     }
 
@@ -77,9 +77,9 @@ impl<'a> Destination<'a> {
     /// be kept.
     ///
     /// # Errors
-    /// [`Error::File`].
-    pub(super) fn claim(&self, own: Own) -> Result<Claim> {
-        self.try_claim(own).map_err(|source| Error::File {
+    /// [`Error`].
+    pub(crate) fn claim(&self, own: Own) -> Result<Claim> {
+        self.try_claim(own).map_err(|source| Error {
             path: self.path.to_owned(),
             source,
         })
@@ -116,11 +116,11 @@ impl<'a> Destination<'a> {
     }
 }
 
-pub(super) const FOREIGN: &str = "this file is not a result of hysteron, or it was changed since";
+pub(crate) const FOREIGN: &str = "this file is not a result of hysteron, or it was changed since";
 
 /// The error for a file that must be kept. Its kind differs from other errors, so that a surface
 /// can explain how to force it.
-pub(super) fn foreign(what: &str) -> io::Error {
+pub(crate) fn foreign(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, what)
 }
 
@@ -138,7 +138,7 @@ fn is_same(input: &Path, there: &Path) -> io::Result<bool> {
 /// Refuses two results with the same path.
 ///
 /// # Errors
-/// [`Error::File`] with the second path.
+/// [`Error`] with the second path.
 pub fn refuse_one_file(first: &Path, second: &Path) -> Result<()> {
     let name = |path: &Path| {
         let name = path
@@ -158,7 +158,7 @@ pub fn refuse_one_file(first: &Path, second: &Path) -> Result<()> {
                 && same_file::is_same_file(folder_of(first), folder_of(second)).unwrap_or(false));
     match one {
         false => Ok(()),
-        true => Err(Error::File {
+        true => Err(Error {
             path: second.to_owned(),
             source: io::Error::other("two results would be this one file: name another one"),
         }),
@@ -166,7 +166,7 @@ pub fn refuse_one_file(first: &Path, second: &Path) -> Result<()> {
 }
 
 /// The folder that contains a path.
-pub(crate) fn folder_of(path: &Path) -> &Path {
+pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
@@ -176,7 +176,7 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 /// What was at the destination when the work began. It decides what may be replaced when the result
 /// is complete.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Claim {
+pub(crate) enum Claim {
     /// There was no file.
     Nothing,
     /// There was a result of ours.
@@ -190,7 +190,7 @@ pub(super) enum Claim {
 impl Claim {
     /// Checks that `new` may take the place now. The file there may have changed since the work
     /// began.
-    pub(super) fn holds(self, new: &Path, place: &Path) -> io::Result<()> {
+    pub(crate) fn holds(self, new: &Path, place: &Path) -> io::Result<()> {
         let holds = match self {
             Self::Whatever => true,
             Self::Nothing => std::fs::symlink_metadata(place).is_err(),
@@ -210,7 +210,7 @@ impl Claim {
 /// Identifies the state of a file. It changes with every modification that changes the length or
 /// the time of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Stamp(u64, Option<SystemTime>);
+pub(crate) struct Stamp(u64, Option<SystemTime>);
 
 impl Stamp {
     fn of(file: &Metadata) -> Self {

@@ -1,12 +1,12 @@
 //! Folders that appear complete or not at all.
 
-use super::atomic::sync_folder;
-use super::destination::{Destination, Own, folder_of, foreign};
-use super::manifest::{self, Manifest};
-use super::moves::Moves;
-use super::unfinished::{Workshop, unfinished};
-use super::{AtomicFile, destination};
-use crate::error::{Error, Result};
+use crate::atomic::sync_folder;
+use crate::destination::{Destination, Own, folder_of, foreign};
+use crate::error::{Error, OfFile, Result};
+use crate::manifest::{self, Manifest};
+use crate::moves::Moves;
+use crate::unfinished::{Workshop, unfinished};
+use crate::{AtomicFile, destination};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
@@ -45,11 +45,11 @@ impl AtomicFolder {
     /// together with the files.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error`].
     pub fn create<'a>(target: impl Into<Destination<'a>>, own: Option<Own>) -> Result<Self> {
         let target = target.into();
         let path = target.path();
-        Self::start(&target, own).map_err(|source| Error::File {
+        Self::start(&target, own).map_err(|source| Error {
             path: path.to_owned(),
             source,
         })
@@ -86,7 +86,7 @@ impl AtomicFolder {
     /// Refuses files with these names before any work, if they would be refused at the end.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error`].
     pub fn claim<N: AsRef<Path>>(&self, names: impl IntoIterator<Item = N>) -> Result<()> {
         names
             .into_iter()
@@ -102,20 +102,16 @@ impl AtomicFolder {
     /// Lets `write` write one file. The function gets the path to write to.
     ///
     /// # Errors
-    /// The error of the function, with the final path of the file; [`Error::File`].
-    pub fn file<T>(
+    /// The error of the function, with the final path of the file; [`Error`].
+    pub fn file<T, E: OfFile>(
         &mut self,
         name: impl AsRef<Path>,
-        write: impl FnOnce(&Path) -> Result<T>,
-    ) -> Result<T> {
+        write: impl FnOnce(&Path) -> std::result::Result<T, E>,
+    ) -> std::result::Result<T, E> {
         let name = name.as_ref();
         let path = self.stage().join(name);
-        let placed = |error| match error {
-            Error::File { source, .. } => self.fault(name, source),
-            other => other,
-        };
         fs::create_dir_all(folder_of(&path)).map_err(|source| self.fault(name, source))?;
-        let written = write(&path).map_err(placed)?;
+        let written = write(&path).map_err(|error| error.placed(&self.target.join(name)))?;
         self.files.push(name.to_owned());
         Ok(written)
     }
@@ -124,7 +120,7 @@ impl AtomicFolder {
     /// ones are removed.
     ///
     /// # Errors
-    /// [`Error::File`]; then the folder is unchanged.
+    /// [`Error`]; then the folder is unchanged.
     pub fn commit(mut self) -> Result<()> {
         if self.own.is_none() {
             self.write_manifests()?;
@@ -143,7 +139,7 @@ impl AtomicFolder {
             true => self.target.clone(),
             false => self.target.join(name),
         };
-        Error::File { path, source }
+        Error { path, source }
     }
 
     fn write_manifests(&mut self) -> Result<()> {
@@ -180,7 +176,7 @@ impl AtomicFolder {
         for folder in path.ancestors().skip(1).take(name.components().count()) {
             if folder.is_file() {
                 let source = io::Error::other("this is a file, where a folder is needed");
-                return Err(Error::File {
+                return Err(Error {
                     path: folder.to_owned(),
                     source,
                 });

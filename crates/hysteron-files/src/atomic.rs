@@ -1,8 +1,8 @@
 //! Files that appear complete or not at all.
 
-use super::destination::{Claim, Destination, Own, folder_of};
-use super::unfinished::{file_in, finished};
+use crate::destination::{Claim, Destination, Own, folder_of};
 use crate::error::{Error, Result};
+use crate::unfinished::{file_in, finished};
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ impl AtomicFile {
     /// replaced.
     ///
     /// # Errors
-    /// [`Error::File`]. Its source has the kind [`io::ErrorKind::AlreadyExists`] if an existing
+    /// [`Error`]. Its source has the kind [`io::ErrorKind::AlreadyExists`] if an existing
     /// file is not ours and is kept.
     pub fn create<'a>(target: impl Into<Destination<'a>>, own: Own) -> Result<Self> {
         let target = target.into();
@@ -45,7 +45,7 @@ impl AtomicFile {
         let path = target.path().to_owned();
         match Self::place(&path, claim) {
             Ok(to) => Ok(Self { path, to }),
-            Err(source) => Err(Error::File { path, source }),
+            Err(source) => Err(Error { path, source }),
         }
     }
 
@@ -77,24 +77,24 @@ impl AtomicFile {
     /// Gives the file its name.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error`].
     pub fn commit(self) -> Result<()> {
         let path = self.path;
         let kept = match self.to {
             Place::There(_) => Ok(()),
             Place::Beside(beside) => beside.keep(),
         };
-        kept.map_err(|source| Error::File { path, source })
+        kept.map_err(|source| Error { path, source })
     }
 
     /// Writes the rest of the file and gives it its name.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error`].
     pub fn commit_with(mut self, bytes: &[u8]) -> Result<()> {
         match self.write_all(bytes).and_then(|()| self.flush()) {
             Ok(()) => self.commit(),
-            Err(source) => Err(Error::File {
+            Err(source) => Err(Error {
                 path: self.path,
                 source,
             }),
@@ -122,7 +122,7 @@ impl Beside {
 ///
 /// The file already has its name at this point. So a file system that cannot do this is not an
 /// error.
-pub(super) fn sync_folder(folder: &Path) {
+pub(crate) fn sync_folder(folder: &Path) {
     #[cfg(unix)]
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     #[cfg(not(unix))]

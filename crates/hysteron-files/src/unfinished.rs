@@ -22,7 +22,7 @@ const ATTEMPTS: usize = 100;
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// The list of temporary files. While it is held, [`discard_unfinished`] waits.
-pub(super) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     // The list is valid even if a thread panicked while it held the lock.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -39,12 +39,12 @@ pub fn discard_unfinished() {
 }
 
 /// Removes a path from the list, because it got its final name or was removed.
-pub(super) fn finished(path: &Path) {
+pub(crate) fn finished(path: &Path) {
     unfinished().retain(|other| other != path);
 }
 
 /// A new temporary file in `folder`, with the given permissions or the default ones.
-pub(super) fn file_in(folder: &Path, like: Option<fs::Permissions>) -> io::Result<NamedTempFile> {
+pub(crate) fn file_in(folder: &Path, like: Option<fs::Permissions>) -> io::Result<NamedTempFile> {
     sweep(folder);
     let mut builder = builder();
     // The default of new files, not the private mode of temporary files.
@@ -64,13 +64,13 @@ pub(super) fn file_in(folder: &Path, like: Option<fs::Permissions>) -> io::Resul
 }
 
 /// A new temporary folder inside another, to prepare results in.
-pub(super) struct Workshop {
+pub(crate) struct Workshop {
     folder: TempDir,
     _lock: File,
 }
 
 impl Workshop {
-    pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
+    pub(crate) fn create_in(folder: &Path) -> io::Result<Self> {
         sweep(folder);
         #[cfg_attr(not(unix), expect(unused_mut))]
         let mut builder = builder();
@@ -94,7 +94,7 @@ impl Workshop {
         Err(taken_away())
     }
 
-    pub(super) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.folder.path()
     }
 }
@@ -127,7 +127,7 @@ fn builder() -> tempfile::Builder<'static, 'static> {
 }
 
 /// The error without the temporary path, which means nothing to the user.
-pub(crate) fn bare(error: io::Error) -> io::Error {
+pub fn bare(error: io::Error) -> io::Error {
     error.kind().into()
 }
 

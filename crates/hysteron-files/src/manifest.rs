@@ -3,14 +3,14 @@
 //!
 //! The format can also be read by `sha256sum -c`.
 
-use super::hashing::Hash;
+use crate::hashing::Hash;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io;
 use std::path::Path;
 
 /// The file name of the list.
-pub(super) const NAME: &str = "hysteron.sha256";
+pub(crate) const NAME: &str = "hysteron.sha256";
 
 /// The first line of a list.
 const HEAD: &str =
@@ -18,12 +18,12 @@ const HEAD: &str =
 
 /// File names and digests of one folder, without its subfolders.
 #[derive(Default)]
-pub(super) struct Manifest(BTreeMap<String, String>);
+pub(crate) struct Manifest(BTreeMap<String, String>);
 
 impl Manifest {
     /// Reads the list of a folder; empty if there is none, or if a file of that name is something
     /// else.
-    pub(super) fn read(folder: &Path) -> Self {
+    pub(crate) fn read(folder: &Path) -> Self {
         let text = std::fs::read_to_string(folder.join(NAME)).unwrap_or_default();
         Self::parse(&text).unwrap_or_default()
     }
@@ -38,14 +38,14 @@ impl Manifest {
     }
 
     /// Adds a file of a folder.
-    pub(super) fn add(&mut self, folder: &Path, name: &str) -> io::Result<()> {
+    pub(crate) fn add(&mut self, folder: &Path, name: &str) -> io::Result<()> {
         let digest = Hash::file(&folder.join(name))?;
         self.0.insert(name.to_owned(), digest);
         Ok(())
     }
 
     /// The text of the list.
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!("{HEAD}\n");
         for (name, digest) in &self.0 {
             // Writing to a string cannot fail.
@@ -54,13 +54,13 @@ impl Manifest {
         text
     }
 
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)
     }
 
     /// Whether a file of the folder is the list itself, or matches its digest in the list. A link
     /// does not.
-    pub(super) fn owns(&self, folder: &Path, name: &str) -> io::Result<bool> {
+    pub(crate) fn owns(&self, folder: &Path, name: &str) -> io::Result<bool> {
         let path = folder.join(name);
         if !std::fs::symlink_metadata(&path)?.is_file() {
             return Ok(false);
@@ -76,7 +76,7 @@ impl Manifest {
 
     /// Whether a folder contains only files that are ours, and subfolders of the same kind. An
     /// empty subfolder is not ours, because we make none.
-    pub(super) fn owns_all(folder: &Path) -> io::Result<bool> {
+    pub(crate) fn owns_all(folder: &Path) -> io::Result<bool> {
         let listed = Self::read(folder);
         for entry in std::fs::read_dir(folder)? {
             let entry = entry?;

@@ -9,11 +9,11 @@ use std::rc::Rc;
 
 /// The hash of the bytes that have passed through a [`Hashing`].
 #[derive(Clone, Default)]
-pub(crate) struct Hash(Rc<RefCell<Sha256>>);
+pub struct Hash(Rc<RefCell<Sha256>>);
 
 impl Hash {
     /// SHA-256 of a whole file, in hexadecimal.
-    pub(crate) fn file(path: &Path) -> std::io::Result<String> {
+    pub fn file(path: &Path) -> std::io::Result<String> {
         let hash = Self::default();
         let mut file = Hashing::new(File::open(path)?, Some(hash.clone()));
         std::io::copy(&mut file, &mut std::io::sink())?;
@@ -21,28 +21,28 @@ impl Hash {
     }
 
     /// SHA-256 of bytes, in hexadecimal.
-    #[cfg(feature = "data")]
-    pub(crate) fn bytes(bytes: &[u8]) -> String {
+    pub fn bytes(bytes: &[u8]) -> String {
         let hash = Self::default();
         hash.0.borrow_mut().update(bytes);
         hash.finish()
     }
 
     /// The hash in hexadecimal. After this call, the hash starts again from empty.
-    pub(crate) fn finish(&self) -> String {
+    pub fn finish(&self) -> String {
         let bytes = self.0.take().finalize();
         bytes.iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
 /// A reader that hashes the bytes that pass through it, if asked to.
-pub(crate) struct Hashing<R> {
+pub struct Hashing<R> {
     file: R,
     hash: Option<Hash>,
 }
 
 impl<R: Read> Hashing<R> {
-    pub(crate) fn new(file: R, hash: Option<Hash>) -> Self {
+    /// Reads `file`, and hashes what is read with `hash`.
+    pub fn new(file: R, hash: Option<Hash>) -> Self {
         Self { file, hash }
     }
 }

@@ -10,8 +10,8 @@ use std::borrow::Cow;
 /// in this way.
 ///
 /// ```
-/// assert_eq!(hysteron::printable("a\u{1b}[31m\u{202e}b"), "a\\u001b[31m\\u202eb");
-/// assert_eq!(hysteron::printable("line\n\tunit °C"), "line\n\tunit °C");
+/// assert_eq!(hysteron_files::printable("a\u{1b}[31m\u{202e}b"), "a\\u001b[31m\\u202eb");
+/// assert_eq!(hysteron_files::printable("line\n\tunit °C"), "line\n\tunit °C");
 /// ```
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
@@ -32,8 +32,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 /// left out.
 ///
 /// ```
-/// assert_eq!(hysteron::shell_word("data.csv"), "data.csv");
-/// assert_eq!(hysteron::shell_word("my wire's.csv"), r"'my wire'\''s.csv'");
+/// assert_eq!(hysteron_files::shell_word("data.csv"), "data.csv");
+/// assert_eq!(hysteron_files::shell_word("my wire's.csv"), r"'my wire'\''s.csv'");
 /// ```
 #[must_use]
 pub fn shell_word(text: &str) -> String {
@@ -47,8 +47,8 @@ pub fn shell_word(text: &str) -> String {
 /// The text as a literal of Python.
 ///
 /// ```
-/// assert_eq!(hysteron::python_literal("my wire's.csv"), r#""my wire's.csv""#);
-/// assert_eq!(hysteron::python_literal("a\"b\\c\n\u{202e}"), r#""a\"b\\c\x0a\U0000202e""#);
+/// assert_eq!(hysteron_files::python_literal("my wire's.csv"), r#""my wire's.csv""#);
+/// assert_eq!(hysteron_files::python_literal("a\"b\\c\n\u{202e}"), r#""a\"b\\c\x0a\U0000202e""#);
 /// ```
 #[must_use]
 pub fn python_literal(text: &str) -> String {
