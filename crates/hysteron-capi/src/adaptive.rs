@@ -48,10 +48,6 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
             )
         };
         let model = MODELS.get(model, "model")?;
-        // A step in memory of the library takes no time yet.
-        if model.is_timed() {
-            model.plain()?;
-        }
         let learner: Box<dyn Learns> = Box::new(Adaptive::new(&model, options)?);
         out.set(LEARNERS.insert(learner.into())?);
         Ok(())

@@ -24,6 +24,10 @@ mod adaptive;
 #[cfg(feature = "handles")]
 mod batch;
 mod codes;
+#[cfg(feature = "handles")]
+mod control;
+#[cfg(feature = "handles")]
+mod controller;
 mod fault;
 /// cbindgen:ignore
 #[cfg(feature = "fmi")]
@@ -59,6 +63,10 @@ pub use adaptive::*;
 #[cfg(feature = "handles")]
 pub use batch::*;
 pub use codes::*;
+#[cfg(feature = "handles")]
+pub use control::*;
+#[cfg(feature = "handles")]
+pub use controller::*;
 pub use last_error::hysteron_last_error;
 #[cfg(feature = "handles")]
 pub use limits::*;

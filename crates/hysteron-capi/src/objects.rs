@@ -9,6 +9,7 @@ use crate::memory::{Lent, Room, Size};
 use crate::pointer::Arguments;
 use crate::shift_options::HysteronShift;
 use crate::types::{HYSTERON_START_FITTED, HYSTERON_START_OFF, HYSTERON_START_ON};
+use hysteron::control::Compensator;
 use hysteron::{Learning, Model, Sample, Wanted};
 use hysteron_core::{Output, STATE_NUMBERS, Solution};
 use std::ops::Range;
@@ -76,6 +77,10 @@ pub(crate) trait Learns: Send {
         Err(OTHER_KIND)
     }
     fn shift(&self) -> Result<HysteronShift> {
+        Err(OTHER_KIND)
+    }
+    /// A copy for a control loop.
+    fn in_loop(&self) -> Result<Compensator> {
         Err(OTHER_KIND)
     }
 }

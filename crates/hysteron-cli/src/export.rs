@@ -2,9 +2,9 @@
 
 use crate::args;
 use crate::terminal::{Result, print};
-use hysteron::control::{Gains, Scheme};
+use hysteron::control::{Gains, Safety, Scheme};
 use hysteron::{Model, Remedy, Setting};
-use hysteron_export::{ArduinoOptions, CControl, COptions, CSampling, Fmu, FmuOptions};
+use hysteron_export::{ArduinoOptions, COptions, CSampling, Fmu, FmuOptions};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
@@ -166,7 +166,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
 }
 
 /// A loop around a model, with gains from it where none are given.
-fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> Result<CControl> {
+fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> Result<Scheme> {
     let mut scheme = Scheme {
         tolerance: model.usual_tolerance(),
         delay: Some(1 + model.delay().at(Some(dt))),
@@ -181,11 +181,11 @@ fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> 
     });
     // As of `run`.
     let (lost_s, stuck_s) = hysteron_bench::Safety::usual(dt);
-    Ok(CControl {
-        lost_s,
-        stuck_s,
-        scheme,
-    })
+    scheme.safety = Safety {
+        lost_s: Some(lost_s),
+        stuck_s: Some(stuck_s),
+    };
+    Ok(scheme)
 }
 
 fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
@@ -202,25 +202,25 @@ fn sampling(model: &Model, dt: Option<f64>, drive: Option<(f64, f64)>) -> CSampl
     }
 }
 
-fn loop_json(control: &CControl) -> serde_json::Value {
+fn loop_json(scheme: &Scheme) -> serde_json::Value {
     json!({
-        "dt": control.scheme.interval_s,
-        "gains": control.scheme.pid,
-        "drive": [control.scheme.drives.0, control.scheme.drives.1],
-        "delay_samples": control.scheme.delay,
-        "tolerance": control.scheme.tolerance,
-        "lost_s": control.lost_s,
-        "stuck_s": control.stuck_s,
+        "dt": scheme.interval_s,
+        "gains": scheme.pid,
+        "drive": [scheme.drives.0, scheme.drives.1],
+        "delay_samples": scheme.delay,
+        "tolerance": scheme.tolerance,
+        "lost_s": scheme.safety.lost_s,
+        "stuck_s": scheme.safety.stuck_s,
     })
 }
 
-fn loop_text(control: &CControl) -> String {
+fn loop_text(scheme: &Scheme) -> String {
     let Scheme {
         pid,
         interval_s,
         drives: (low, high),
         ..
-    } = &control.scheme;
+    } = scheme;
     let gains = pid.map_or(String::new(), |gains| {
         format!(
             "gain {:.3e}, integral time {:.3e} s, derivative time {:.3e} s, ",

@@ -16,7 +16,7 @@ mod written;
 
 use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, STAGES};
 use constants::Constants;
-pub use control::CControl;
+use hysteron::control::Scheme;
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
 use learners::Learners;
 pub use real::CReal;
@@ -116,19 +116,21 @@ pub fn c_sampled<'a>(
 
 /// As [`c_sampled`], with a control loop around the model: `hysteron_mcu_control.h`, `.c`, with
 /// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
-/// of [`hysteron::control::Controller`] with the fixed model as its compensator.
+/// of [`hysteron::control::Controller`] with the fixed model as its compensator, which
+/// stands in the place of that of `scheme`. A filter, a gate and an inner loop are not to be had
+/// there.
 ///
 /// # Errors
 /// As [`c_sampled`]; [`Error::Export`] too for a model with a load or without an inverse, and for
-/// settings that the target does not have ([`CControl::scheme`]).
+/// settings that the target does not have.
 pub fn c_controlled<'a>(
     model: &Model,
     target: impl Into<Destination<'a>>,
     options: &COptions<'_>,
     sampling: &CSampling,
-    control: &CControl,
+    scheme: &Scheme,
 ) -> Result<CExport> {
-    let texts = c_texts_controlled(model, options, sampling, Some(control), false)?;
+    let texts = c_texts_controlled(model, options, sampling, Some(scheme), false)?;
     write(target.into(), texts, options)
 }
 
@@ -173,13 +175,13 @@ pub(crate) fn c_texts_controlled(
     model: &Model,
     options: &COptions<'_>,
     sampling: &CSampling,
-    control: Option<&CControl>,
+    scheme: Option<&Scheme>,
     alone: bool,
 ) -> Result<(CExport, Vec<String>)> {
     let name = name::choose(options.name, options.source)?;
     match options.real {
-        CReal::Float => texts::<f32>(model, options, name, sampling, (control, alone)),
-        CReal::Double => texts::<f64>(model, options, name, sampling, (control, alone)),
+        CReal::Float => texts::<f32>(model, options, name, sampling, (scheme, alone)),
+        CReal::Double => texts::<f64>(model, options, name, sampling, (scheme, alone)),
     }
 }
 
@@ -188,7 +190,7 @@ fn texts<T: Number>(
     options: &COptions<'_>,
     name: String,
     sampling: &CSampling,
-    (control, alone): (Option<&CControl>, bool),
+    (scheme, alone): (Option<&Scheme>, bool),
 ) -> Result<(CExport, Vec<String>)> {
     let constants = Constants::<T>::new(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
@@ -206,15 +208,15 @@ fn texts<T: Number>(
         false => None,
     };
     let learned = learners.as_ref().map(|learners| learners.text(&name));
-    let controlled = match control {
+    let controlled = match scheme {
         None => None,
-        Some(control) => {
-            control::check(control, model, &constants, sampling.dt)?;
+        Some(scheme) => {
+            control::check(scheme, model, &constants, sampling.dt)?;
             let staged = constants.stages.is_some();
-            Some(control::text::<T>(control, model, (&name, staged))?)
+            Some(control::text::<T>(scheme, model, (&name, staged))?)
         }
     };
-    let late = control.map(|control| control::late(&control.scheme, model));
+    let late = scheme.map(|scheme| control::late(scheme, model));
     let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
@@ -223,7 +225,7 @@ fn texts<T: Number>(
         _ => &[&ALGORITHM],
     };
     let mut algorithm = parts.concat();
-    if control.is_some() {
+    if scheme.is_some() {
         algorithm.extend(CONTROL);
         algorithm.extend(constants.stages.iter().flat_map(|_| CONTROL_STAGES));
     }

@@ -12,8 +12,7 @@ use hysteron::Model;
 
 pub use arduino::{Arduino, ArduinoOptions, Board, BoardMemory, arduino};
 pub use c::{
-    CControl, CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_controlled, c_sampled,
-    c_texts,
+    CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_controlled, c_sampled, c_texts,
 };
 pub use fmu::{Fmi, Fmu, FmuOptions, fmu, fmu_bytes};
 

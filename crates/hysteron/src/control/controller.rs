@@ -3,6 +3,7 @@
 
 use super::gate::Gate;
 use super::pid::clamp;
+use super::safety::Silence;
 use super::sensor::{Sensed, Sensor};
 use super::standstill::{Cause, Standstill};
 use super::{Gains, LoopStatus, Pid, Reading, Scheme};
@@ -86,6 +87,7 @@ pub struct Controller {
     dt: f64,
     gate: Option<Gate>,
     standstill: Standstill,
+    silence: Silence,
     /// The drive to go on from at the next sample.
     from: Option<f64>,
     /// What is added to the feedforward for a few samples, so that it does not jump, and for how
@@ -127,6 +129,7 @@ impl Controller {
             dt: scheme.interval_s,
             gate: scheme.gate.map(Gate::new),
             standstill: Standstill::default(),
+            silence: Silence::default(),
             from: None,
             fade: (0.0, 0),
             feedforward: None,
@@ -226,6 +229,7 @@ impl Controller {
             self.lost |= input == Some(Sensed::Broken);
         }
         let command = self.command(target, next, output.value(), &mut status)?;
+        status.safe = self.silence.given_up();
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
@@ -272,7 +276,8 @@ impl Controller {
 
     /// Goes on from `drive` at the next sample, without a bump: from manual to automatic. The
     /// integral begins so that the first drive is this one. What it cannot take, such as the
-    /// feedforward of an inverse alone, fades within ten samples.
+    /// feedforward of an inverse alone, fades within ten samples. A loop that was given up
+    /// ([`Scheme::safety`]) goes on.
     ///
     /// ```
     /// use hysteron::control::{Controller, Gains, Reading, Reference, Scheme};
@@ -292,6 +297,10 @@ impl Controller {
     pub fn go_on_from(&mut self, drive: f64) -> Result<()> {
         self.applied(drive)?;
         (self.from, self.drive) = (Some(drive), Some(drive));
+        if self.silence.given_up() {
+            self.silence = Silence::default();
+            self.standstill.forgive();
+        }
         Ok(())
     }
 
@@ -393,6 +402,8 @@ impl Controller {
                 output = f64::NAN;
             }
         }
+        let (safety, stuck_s) = (self.scheme.safety, self.stuck_s());
+        self.silence.push(safety, reading.output, stuck_s, dt);
         (self.output.read(output, dt), input, status)
     }
 
@@ -446,7 +457,10 @@ impl Controller {
         status: LoopStatus,
     ) -> Action {
         let asked = self.driven(command, input);
-        let drive = self.slewed(asked);
+        let drive = match status.safe {
+            true => self.rest_drive(),
+            false => self.slewed(asked),
+        };
         let (low, high) = self.scheme.drives;
         self.held = (
             drive <= low || drive > asked,

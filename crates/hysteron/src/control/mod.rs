@@ -6,8 +6,9 @@
 //!
 //! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
 //! feedback and `tuning` its gains; `sensor` checks each sensor, `gate` holds back spikes,
-//! `standstill` notices a stuck one; `trust` chooses between a learner and the model it began from; `status` has the flags; `device`,
-//! `run` and `trace` connect the loop to a device and record it.
+//! `standstill` notices a stuck one and `safety` gives the loop up; `trust` chooses between a
+//! learner and the model it began from; `status` has the flags; `device`, `run` and `trace` connect
+//! the loop to a device and record it.
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
@@ -54,6 +55,7 @@ mod device;
 mod gate;
 mod pid;
 mod run;
+mod safety;
 mod scheme;
 mod sensor;
 mod standstill;
@@ -67,6 +69,7 @@ pub use controller::{Action, Controller, Reference};
 pub use device::{Device, Disturbance, Reading, SimulatedPlant};
 pub use pid::{Gains, Pid};
 pub use run::{Course, run};
+pub use safety::Safety;
 pub use scheme::{InnerLoop, Scheme};
 pub use status::LoopStatus;
 pub use trace::{Snapshot, Trace};

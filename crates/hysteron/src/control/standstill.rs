@@ -63,6 +63,11 @@ impl Standstill {
         (count >= CHANCE).then_some(time)
     }
 
+    /// Begins anew to notice.
+    pub(super) fn forgive(&mut self) {
+        self.still = (0, 0.0);
+    }
+
     /// Where the drive may go while the output stands still and no model says whether it should: so
     /// a stuck sensor does not drive to a limit.
     pub(super) fn room(&self) -> Option<(f64, f64)> {
