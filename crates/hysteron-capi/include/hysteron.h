@@ -1145,8 +1145,7 @@ size_t hysteron_last_error(char *text, size_t size);
 int32_t hysteron_model_limits(uint64_t model, struct HysteronLimits *limits);
 
 /**
- * Reads the model file at `path`. Free the handle with `hysteron_model_free`. States, batches and
- * learners take the inputs as they act: a dead time in the file (`delay`) is left to the caller.
+ * Reads the model file at `path`. Free the handle with `hysteron_model_free`.
  */
 int32_t hysteron_model_read(const char *path, uint64_t *model);
 
@@ -1195,6 +1194,18 @@ int32_t hysteron_model_info(uint64_t model, struct HysteronModelInfo *info);
  * Writes what a model needs beside its input, and in which ranges.
  */
 int32_t hysteron_model_needs(uint64_t model, struct HysteronModelNeeds *needs);
+
+/**
+ * Writes the dead time of a model in samples that are `dt` s apart, `NAN` for those of its
+ * recording; 0 without one, at most 1000.
+ *
+ * An input that is given to a state, a lane or a learner acts so many samples later. Before the
+ * first sample the input stood where it is first. The time step of the second sample tells how
+ * many they are from there on. An inverse step gives the input at once that brings the target when
+ * it arrives: its `target` is the one of so many samples later. It leaves nothing under way in its
+ * state, so that forward steps need another one.
+ */
+int32_t hysteron_model_delay(uint64_t model, double dt, size_t *samples);
 
 /**
  * Copies the weights, row by row. Of a model that depends on a load, they are those without its
@@ -1268,8 +1279,9 @@ int32_t hysteron_state_start(uint64_t state, int32_t start);
 
 /**
  * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
- * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
- * becomes the number of turning points, also if `capacity` is too small.
+ * input of the operators. A model with stages also needs `hysteron_state_save_stages`, one with a
+ * dead time `hysteron_state_save_inputs`. `count` becomes the number of turning points, also if
+ * `capacity` is too small.
  */
 int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
 
@@ -1291,6 +1303,20 @@ int32_t hysteron_state_save_stages(uint64_t state, struct HysteronStageState *st
  * `hysteron_state_restore`, which puts the stages at rest with the next sample.
  */
 int32_t hysteron_state_restore_stages(uint64_t state, const struct HysteronStageState *stages);
+
+/**
+ * Saves the inputs that are under way: given, and not acting yet for the dead time of the model; at
+ * most `capacity`, from the one that arrives next. A model without a dead time needs it not.
+ * `count` becomes their number, also if `capacity` is too small.
+ */
+int32_t hysteron_state_save_inputs(uint64_t state, double *inputs, size_t capacity, size_t *count);
+
+/**
+ * Restores, bit for bit, what `hysteron_state_save_inputs` gave. Call it after
+ * `hysteron_state_restore`, which leaves nothing under way. More inputs than the dead time has
+ * samples are `HYSTERON_VALUE`.
+ */
+int32_t hysteron_state_restore_inputs(uint64_t state, const double *inputs, size_t count);
 
 /**
  * Writes the temperature after the last sample: the input itself for a model without a thermal

@@ -194,7 +194,8 @@ impl Learns for WeightsOfCaller {
         let (weights, offset) = (self.estimator.parameters(), self.estimator.offset());
         let (operator, plane) = (self.model.operator(), *self.model.plane());
         let (offset, sign) = (self.factor() * offset, self.model.sign());
-        let mut model = Model::new(operator, plane, weights.to_vec(), offset, sign)?;
+        let model = Model::new(operator, plane, weights.to_vec(), offset, sign)?;
+        let mut model = model.with_delay(self.model.delay());
         (model.input, model.output) = (self.model.input.clone(), self.model.output.clone());
         Ok(model)
     }

@@ -28,12 +28,15 @@ mod codes;
 mod control;
 #[cfg(feature = "handles")]
 mod controller;
+mod delay;
 mod fault;
 /// cbindgen:ignore
 #[cfg(feature = "fmi")]
 pub mod fmi;
 mod handles;
 mod last_error;
+#[cfg(feature = "handles")]
+mod late;
 #[cfg(feature = "handles")]
 mod learners;
 #[cfg(feature = "handles")]

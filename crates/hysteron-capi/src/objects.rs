@@ -35,10 +35,25 @@ pub(crate) trait Moves: Send {
     fn restore(&mut self, turning_points: &[f64], input: f64) -> Result<()>;
     fn stage_numbers(&self) -> [f64; STATE_NUMBERS];
     fn restore_stages(&mut self, numbers: &[f64; STATE_NUMBERS]) -> Result<()>;
+    /// The number of inputs that are under way, and each of them.
+    fn under_way(&self, _: &mut dyn FnMut(f64)) -> usize {
+        0
+    }
+    fn restore_under_way(&mut self, inputs: &[f64]) -> Result<()> {
+        match inputs.is_empty() {
+            true => Ok(()),
+            false => too_many(),
+        }
+    }
     fn half_width(&self) -> Result<Option<f64>>;
     /// Notes where the state is, for [`Moves::undo`].
     fn keep(&mut self);
     fn undo(&mut self);
+}
+
+/// More inputs are to be under way than the dead time has samples.
+pub(crate) fn too_many() -> Result<()> {
+    Err(Fault::Call(HYSTERON_VALUE, "inputs"))
 }
 
 /// Where a state starts.

@@ -105,10 +105,10 @@ fn c(args: &args::ExportC) -> Result<()> {
     if !export.stages.is_empty() {
         lines.push(format!("stages: {}", export.stages.join(", ")));
     }
+    lines.extend(dead_time(&model, args.dt));
     if !export.inverse {
         lines.push("weights below zero: the C runs forward only".into());
     }
-    lines.extend(hysteron_export::delay_note(&model, args.dt));
     print(&lines.join("\n"))
 }
 
@@ -161,7 +161,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
         );
     }
     lines.push(loop_text(&control));
-    lines.extend(hysteron_export::delay_note(&model, Some(args.dt)));
+    lines.extend(dead_time(&model, Some(args.dt)));
     print(&lines.join("\n"))
 }
 
@@ -260,14 +260,19 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     let (inputs, outputs) = (inputs.join(", "), outputs.join(", "));
     let kib = bytes.div_ceil(1024);
     let block = format!("{file}: block {name}, {inputs} -> {outputs}, {kib} KiB");
-    let note = hysteron_export::delay_note(&model, None);
-    print(
-        &[Some(block), note]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join("\n"),
-    )
+    let lines: Vec<String> = [Some(block), dead_time(&model, None)]
+        .into_iter()
+        .flatten()
+        .collect();
+    print(&lines.join("\n"))
+}
+
+/// What an export carries of a dead time, where there is one.
+fn dead_time(model: &Model, dt: Option<f64>) -> Option<String> {
+    let (samples, seconds) = (model.delay().at(dt), model.delay().seconds());
+    // A clock is rounded; a nanosecond is no part of a time that one gives.
+    let seconds = (seconds * 1e9).round() / 1e9;
+    (!model.delay().is_none()).then(|| format!("dead time: {seconds} s or {samples} samples"))
 }
 
 /// The model, at a load where one is given.

@@ -3,6 +3,7 @@
 mod algorithm;
 mod constants;
 mod control;
+mod delay;
 mod learners;
 mod name;
 mod notation;
@@ -14,7 +15,7 @@ mod stages;
 mod text;
 mod written;
 
-use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, STAGES};
+use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, DELAY, STAGES};
 use constants::Constants;
 use hysteron::control::Scheme;
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
@@ -52,8 +53,9 @@ pub struct COptions<'a> {
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
 /// in that type as well. A model with negative weights has no inverse there either.
 ///
-/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`]. The code
-/// takes inputs as they act; a dead time is left to its caller ([`crate::delay_note`]).
+/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`]. One with a
+/// dead time ([`Model::delay`]) has `hysteron_mcu_delay.h`, `.c` too, which delay its inputs by
+/// `NAME_LATE` samples.
 ///
 /// Files that were exported before, and not edited since, are replaced, all together or not at all.
 /// A path alone as `target` replaces others of their names too; [`Destination::keeping_foreign`]
@@ -208,8 +210,11 @@ fn texts<T: Number>(
         false => None,
     };
     let learned = learners.as_ref().map(|learners| learners.text(&name));
-    let controlled = match scheme {
-        None => None,
+    // A controller has inputs under way of its own.
+    let dead = model.delay().at(sampling.dt);
+    let dead = Some(dead).filter(|dead| *dead > 0 && scheme.is_none());
+    let around = match scheme {
+        None => dead.map(|dead| delay::text(&name, dead)),
         Some(scheme) => {
             control::check(scheme, model, &constants, sampling.dt)?;
             let staged = constants.stages.is_some();
@@ -229,6 +234,7 @@ fn texts<T: Number>(
         algorithm.extend(CONTROL);
         algorithm.extend(constants.stages.iter().flat_map(|_| CONTROL_STAGES));
     }
+    algorithm.extend(dead.iter().flat_map(|_| DELAY));
     let own = ["h", "c"].map(|end| format!("{name}.{end}"));
     let files = algorithm.iter().map(|(file, _)| *file);
     let files = files.chain(own.iter().map(String::as_str));
@@ -259,7 +265,7 @@ fn texts<T: Number>(
         format!("/* hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
-    let (source, beside) = (options.source, (learned.as_ref(), controlled.as_ref()));
+    let (source, beside) = (options.source, (learned.as_ref(), around.as_ref()));
     texts.push(text::header(&export, &constants, model, source, beside));
     texts.push(text::source(&export, &constants, beside));
     let sealed = texts.iter().map(|text| seal::sealed(text)).collect();

@@ -37,8 +37,8 @@ pub struct Fmu {
 /// whatever file is there.
 ///
 /// A model that depends on time takes the communication step as its time step. One that depends on
-/// a load has the load as an input. The block takes inputs as they act; a dead time is left to its
-/// caller ([`crate::delay_note`]).
+/// a load has the load as an input. Of a model with a dead time the input acts so much later, in
+/// communication steps; the inverse is asked for the output of then.
 ///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};

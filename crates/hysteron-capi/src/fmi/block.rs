@@ -3,6 +3,7 @@
 use super::by_load::ByLoad;
 use super::stages::Constants;
 use super::{Problem, Result};
+use crate::delay::{MOST, UnderWay};
 use hysteron_core::{
     Clipped, Direction, Model, Output, Placed, Sample, Solution, StageState, Stages, Target, Turn,
     Wanted, turn_capacity,
@@ -15,6 +16,8 @@ pub(crate) struct State {
     pub(crate) stages: StageState<f64>,
     /// The model at the present load, where the weights depend on the load.
     pub(crate) mixed: Option<Mixed>,
+    /// The inputs that do not act yet.
+    pub(crate) under_way: UnderWay<Vec<f64>>,
 }
 
 /// Operators at one load.
@@ -49,6 +52,8 @@ pub(crate) struct Block {
     /// Weights that depend on the load. `model` is then that of the first part, and `stages` is
     /// there.
     pub(crate) by_load: Option<ByLoad>,
+    /// The dead time: samples, and s.
+    pub(crate) dead: (usize, f64),
     /// Turning points and input of the operators at the start; `None` for all of them off.
     pub(crate) start: Option<(Vec<f64>, f64)>,
     /// The start values of signal and load in the FMU's description.
@@ -108,6 +113,12 @@ impl Block {
         stages.is_some_and(|stages| stages.core(self.offset, self.sign).is_ok_and(is))
     }
 
+    /// The inverse needs none: its input acts later, and so is its target.
+    fn under_way(&self) -> UnderWay<Vec<f64>> {
+        let is_late = self.kind == Kind::Forward && self.dead.0 > 0;
+        UnderWay::new(self.dead, vec![0.0; if is_late { MOST } else { 0 }])
+    }
+
     pub(crate) fn start(&self, on: bool) -> Result<State> {
         let memory = vec![Turn::default(); turn_capacity(self.model.plane().levels())];
         let mut operators = self.model.state(memory)?;
@@ -123,6 +134,7 @@ impl Block {
                 model: self.model.clone(),
                 placed: None,
             }),
+            under_way: self.under_way(),
         })
     }
 
@@ -141,7 +153,12 @@ impl Block {
         }
         let (signal, flag) = match self.kind {
             Kind::Forward => {
-                let step = self.forward(state, inputs, dt)?;
+                let acting = Inputs {
+                    signal: state.under_way.acting(inputs.signal, Some(dt)),
+                    ..*inputs
+                };
+                let step = self.forward(state, &acting, dt)?;
+                state.under_way.push(inputs.signal, Some(dt));
                 let flag = match step.clipped {
                     None => 0,
                     Some(Clipped::Low) => -1,

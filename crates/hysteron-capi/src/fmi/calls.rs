@@ -235,6 +235,7 @@ mod tests {
             sign: 1.0,
             stages: None,
             by_load: None,
+            dead: (0, 0.0),
             start: None,
             first: (0.0, 0.0),
         };

@@ -45,7 +45,12 @@
 //!
 //! Versions 4 and 5 are versions 2 and 3 with a line for each constant of every stage, in the order in
 //! which the stages are declared. They are written where a stage is there that version 2 does not
-//! have.
+//! have. Versions 6 and 7 are versions 4 and 5 of a model with a dead time. After `output` they have
+//! its samples and seconds:
+//!
+//! ```text
+//! delay 3 0.15
+//! ```
 //!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
 //! fewest digits that give the same number when it is read.
@@ -55,6 +60,7 @@ use super::by_load::ByLoad;
 use super::lines::{Fault, Lines, Parsed};
 use super::stages::{Constants, More};
 use super::{Problem, Result, checksum};
+use crate::delay::MOST;
 use hysteron_core::{Model, Operator, Plane, operator_count, table_len};
 use std::path::Path;
 
@@ -64,6 +70,8 @@ const HEAD: &str = "hysteron-fmu 1";
 const HEAD_STAGES: [&str; 2] = ["hysteron-fmu 2", "hysteron-fmu 4"];
 /// That of a model whose weights depend on the load.
 const HEAD_PARTS: [&str; 2] = ["hysteron-fmu 3", "hysteron-fmu 5"];
+/// Those of a model with a dead time, without and with such weights.
+const HEAD_LATE: [&str; 2] = ["hysteron-fmu 6", "hysteron-fmu 7"];
 
 /// Reads the model in the folder of the FMU's resources. Errors name file and line.
 pub(crate) fn read(folder: &Path) -> Result<Block> {
@@ -97,8 +105,9 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     })?;
     let mut lines = Lines::new(text);
     let head = lines.next()?;
-    let by_load = HEAD_PARTS.contains(&head);
-    if !(head == HEAD || by_load || HEAD_STAGES.contains(&head)) {
+    let is_late = HEAD_LATE.contains(&head);
+    let by_load = HEAD_PARTS.contains(&head) || head == HEAD_LATE[1];
+    if !(head == HEAD || by_load || is_late || HEAD_STAGES.contains(&head)) {
         let head: String = head.chars().take(2 * HEAD.len()).collect();
         return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
     }
@@ -129,10 +138,21 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         "-1" => -1.0,
         other => return lines.fault(format!("the sign {other} is neither 1 nor -1")),
     };
+    let dead = match is_late {
+        false => (0, 0.0),
+        true => {
+            let [samples, seconds] = lines.entry("delay")?;
+            let (samples, seconds) = (lines.number(samples)?, lines.finite(seconds)?);
+            if !(1..=MOST).contains(&samples) || seconds <= 0.0 {
+                return lines.fault(format!("`delay`, 1 to {MOST} samples and s are expected"));
+            }
+            (samples, seconds)
+        }
+    };
     let more = match head == HEAD {
         true => None,
         false => {
-            let whole = head == HEAD_STAGES[1] || head == HEAD_PARTS[1];
+            let whole = is_late || head == HEAD_STAGES[1] || head == HEAD_PARTS[1];
             Some(More::read(&mut lines, whole)?)
         }
     };
@@ -184,6 +204,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         sign,
         stages: None,
         by_load,
+        dead,
         start: None,
         first: match kind {
             Kind::Forward => (plane.bottom(), 0.0),
@@ -291,11 +312,13 @@ mod tests {
     #[test]
     fn a_fault_with_the_right_checksum_is_named() {
         let cases = [
-            (1, "hysteron-fmu 6", "`hysteron-fmu 6` where"),
+            (1, "hysteron-fmu 8", "`hysteron-fmu 8` where"),
             (1, "hysteron-fmu 2", "`first` is expected"),
             (1, "hysteron-fmu 3", "`first` is expected"),
             (1, "hysteron-fmu 4", "`first` is expected"),
             (1, "hysteron-fmu 5", "`first` is expected"),
+            (1, "hysteron-fmu 6", "`delay` and 2 value"),
+            (1, "hysteron-fmu 7", "`delay` and 2 value"),
             (2, "block sideways", "no block"),
             (2, "block", "`block` and 1 value"),
             (4, "operator", "`operator` and 1 value"),

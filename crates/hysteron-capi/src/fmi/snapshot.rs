@@ -91,7 +91,7 @@ impl Instance {
 }
 
 /// The first word: the kind of data and the version of the format.
-const MARK: u64 = u64::from_le_bytes(*b"hysfmu02");
+const MARK: u64 = u64::from_le_bytes(*b"hysfmu03");
 const PHASES: [Phase; 4] = [
     Phase::Instantiated,
     Phase::Initialising,
@@ -125,7 +125,8 @@ impl Run {
             .into_iter()
             .chain(stages)
             .chain(operators)
-            .chain(points);
+            .chain(points)
+            .chain(self.state.under_way.inputs().map(f64::to_bits));
         let mut bytes: Vec<u8> = words.flat_map(u64::to_le_bytes).collect();
         bytes.extend(checksum(&bytes).to_le_bytes());
         bytes
@@ -165,9 +166,11 @@ impl Run {
             ));
         }
         let whole = checksum(&bytes[..8 * (words.len() - 1)]) == *sum;
-        if !whole || !cut.is_empty() || *count != points.len() as u64 {
+        let of_operators = usize::try_from(*count).ok();
+        let split = of_operators.and_then(|count| points.split_at_checked(count));
+        let Some((points, under_way)) = split.filter(|_| whole && cut.is_empty()) else {
             return Err(broken());
-        }
+        };
         if *model != block.checksum {
             return Err(Problem::new(
                 "the serialised state belongs to another model",
@@ -188,6 +191,11 @@ impl Run {
             .model
             .restore(&mut state.operators, &points, number(input))?;
         state.stages = StageState::from_numbers(&stages.map(f64::from_bits))?;
+        let under_way: Vec<f64> = under_way.iter().map(number).collect();
+        if !under_way.iter().all(|input| input.is_finite()) || !state.under_way.restore(&under_way)
+        {
+            return Err(broken());
+        }
         let run = Self {
             phase: *usize::try_from(*phase)
                 .ok()

@@ -99,6 +99,8 @@ calls! {
         (h.model, memory, state_size(h), state.cast());
     hysteron_state_save(points: ROOM, count: Word, input: ONE) |h|
         (h.state, points.cast(), 16, count.cast(), input.cast());
+    hysteron_state_save_inputs(inputs: ROOM, count: Word) |h|
+        (h.state, inputs.cast(), 16, count.cast());
     hysteron_step(output: ONE, clipped: Integers(1)) |h|
         (h.state, 0.5, output.cast(), clipped.cast());
     hysteron_step_in(output: ONE, clipped: Integers(1)) |h|

@@ -33,9 +33,14 @@ fn about(model: &Model, inverse: bool) -> String {
         false => format!("{operator} hysteresis model with {levels} levels"),
         true => format!("Exact inverse of a hysteresis model ({operator}, {levels} levels)"),
     };
-    match crate::delay_note(model, None) {
-        None => block,
-        Some(note) => format!("{block}; {note}"),
+    // A clock is rounded; a nanosecond is no part of a time that one gives.
+    let seconds = (model.delay().seconds() * 1e9).round() / 1e9;
+    match (model.delay().is_none(), inverse) {
+        (true, _) => block,
+        (false, false) => format!("{block}; its input acts {seconds} s later"),
+        (false, true) => format!(
+            "{block}; its input acts {seconds} s later, so the wanted output is the one of then"
+        ),
     }
 }
 

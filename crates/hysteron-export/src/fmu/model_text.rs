@@ -30,13 +30,13 @@ pub(super) fn write(model: &Model, inverse: bool, token: &str) -> Result<String>
                 true => staged::first_target(model)?,
                 false => input,
             };
-            let version = match (staged::has_others(model), parts.is_some()) {
-                (false, false) => 2,
-                (false, true) => 3,
-                (true, false) => 4,
-                (true, true) => 5,
+            let version = match (model.delay().is_none(), staged::is_whole(model)) {
+                (true, false) => 2,
+                (true, true) => 4,
+                (false, _) => 6,
             };
-            (version, staged::lines(model, (signal, load)))
+            let lines = staged::delay(model) + &staged::lines(model, (signal, load));
+            (version + usize::from(parts.is_some()), lines)
         }
     };
     let mut text = format!(
