@@ -58,6 +58,9 @@ impl<B: AsRef<[f64]> + AsMut<[f64]>> UnderWay<B> {
 
     /// Notes that `input` was given.
     pub(crate) fn push(&mut self, input: f64, dt: Option<f64>) {
+        if self.dead.0 == 0 {
+            return;
+        }
         let Some(first) = self.first else {
             self.first = Some(input);
             return;

@@ -239,7 +239,13 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let fmu = hysteron_export::fmu(&model, &options, target)?;
+    let fmu = match args.dt.zip(args.drive_range).filter(|_| args.controller) {
+        None => hysteron_export::fmu(&model, &options, target)?,
+        Some((dt, drives)) => {
+            let scheme = control(&model, dt, drives, args.gains)?;
+            hysteron_export::fmu_controlled(&model, &scheme, &options, target)?
+        }
+    };
     let file = args.out.display().to_string();
     let Fmu {
         name,

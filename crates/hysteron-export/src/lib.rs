@@ -12,4 +12,4 @@ pub use arduino::{Arduino, ArduinoOptions, Board, BoardMemory, arduino};
 pub use c::{
     CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_controlled, c_sampled, c_texts,
 };
-pub use fmu::{Fmi, Fmu, FmuOptions, fmu, fmu_bytes};
+pub use fmu::{Fmi, Fmu, FmuOptions, fmu, fmu_bytes, fmu_controlled};

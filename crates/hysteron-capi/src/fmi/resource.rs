@@ -52,11 +52,21 @@
 //! delay 3 0.15
 //! ```
 //!
+//! A controller has one more line after `block`: tolerance, range of the output, gain, integral and
+//! derivative time, lowest and highest drive, slew, times until a missing and a stuck reading end
+//! the loop:
+//!
+//! ```text
+//! block controller
+//! control 0.1 10.0 0.5 0.2 0.0 0.0 1.0 5.0 0.5 1.0
+//! ```
+//!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
 //! fewest digits that give the same number when it is read.
 
 use super::block::{Block, Kind};
 use super::by_load::ByLoad;
+use super::controller::Control;
 use super::lines::{Fault, Lines, Parsed};
 use super::stages::{Constants, More};
 use super::{Problem, Result, checksum};
@@ -115,7 +125,12 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     let kind = match lines.entry("block")? {
         ["forward"] => Kind::Forward,
         ["inverse"] => Kind::Inverse,
+        ["controller"] => Kind::Controller,
         [other] => return lines.fault(format!("there is no block `{other}`")),
+    };
+    let control = match kind {
+        Kind::Controller => Control::read(&mut lines)?,
+        Kind::Forward | Kind::Inverse => Control::NONE,
     };
     let [token] = lines.entry("token")?;
     let operator = match lines.entry("operator")? {
@@ -183,7 +198,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         let table = vec![0.0; table_len(levels)];
         let model = Model::new(plane, operator, &weights, table)
             .or_else(|error| lines.fault(error.to_string()))?;
-        if kind == Kind::Inverse {
+        if kind != Kind::Forward {
             model
                 .inverse()
                 .or_else(|error| lines.fault(error.to_string()))?;
@@ -205,10 +220,11 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         stages: None,
         by_load,
         dead,
+        control,
         start: None,
         first: match kind {
             Kind::Forward => (plane.bottom(), 0.0),
-            Kind::Inverse => (offset + sign * model.output_range().0, 0.0),
+            Kind::Inverse | Kind::Controller => (offset + sign * model.output_range().0, 0.0),
         },
         model,
     };

@@ -1,6 +1,6 @@
 //! Saved states, in memory and as bytes.
 
-use super::block::{Block, Inputs, Outputs};
+use super::block::{Block, Inputs, Kind, Outputs};
 use super::instance::{Instance, Phase, Run};
 use super::{Problem, Result, checksum};
 use crate::handles::Table;
@@ -81,10 +81,22 @@ impl Instance {
     }
 
     pub(crate) fn serialised(&self, handle: u64) -> Result<Vec<u8>> {
+        self.is_serial()?;
         Ok(self.saved(handle)?.bytes(&self.block))
     }
 
+    /// A loop remembers more than the bytes have.
+    fn is_serial(&self) -> Result<()> {
+        match self.block.kind {
+            Kind::Controller => Err(Problem::new(
+                "the states of a controller cannot be serialised, as its description says",
+            )),
+            Kind::Forward | Kind::Inverse => Ok(()),
+        }
+    }
+
     pub(crate) fn deserialise(&mut self, bytes: &[u8]) -> Result<u64> {
+        self.is_serial()?;
         let run = Run::of_bytes(&self.block, bytes)?;
         self.keep(run)
     }
@@ -209,6 +221,7 @@ impl Run {
                 heading: one(heading, 1)?,
                 tolerance: number(band),
                 start_on: *start_on == 1,
+                ..block.inputs()
             },
             outputs: Outputs {
                 signal: number(result),

@@ -2,13 +2,11 @@
 //! inner loop around the input.
 
 use super::gate::Gate;
-use super::pid::clamp;
-use super::safety::Silence;
 use super::sensor::{Sensed, Sensor};
-use super::standstill::{Cause, Standstill};
-use super::{Gains, LoopStatus, Pid, Reading, Scheme};
+use super::{Gains, LoopStatus, Reading, Scheme};
 use crate::error::{Error, Result};
 use crate::model::{Policy, UnderWay};
+use hysteron_core::control::{Cause, Pid, Silence, Standstill, clamp};
 use hysteron_core::{Direction, Outcome};
 
 /// Samples within which a difference of the feedforward fades.
@@ -214,27 +212,37 @@ impl Controller {
         next.iter()
             .try_for_each(|&output| refuse_not_finite(output))?;
         let (output, input, mut status) = self.read(reading);
-        if let Some(compensator) = &mut self.scheme.compensator {
-            if let Some(input) = self.acting {
-                if std::mem::take(&mut self.lost) {
-                    compensator.set_out_again();
-                }
-                let (prediction, outcome) =
-                    compensator.follow(input, Some(self.dt), output.value())?;
-                self.prediction = prediction;
-                status.adapted = outcome == Some(Outcome::Learned);
-                status.rejected |= outcome == Some(Outcome::Rejected);
-                status.stuck |= outcome.is_some_and(Outcome::is_stuck);
-            }
-            self.lost |= input == Some(Sensed::Broken);
-        }
+        self.follow((output, input), &mut status)?;
         let command = self.command(target, next, output.value(), &mut status)?;
         status.safe = self.silence.given_up();
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
-    /// Runs one sample with a given `command` for the input, without regard to the output. For
-    /// recordings and step tests.
+    /// Lets the model follow the input that acts, and learn from the output.
+    fn follow(
+        &mut self,
+        (output, input): (Sensed, Option<Sensed>),
+        status: &mut LoopStatus,
+    ) -> Result<()> {
+        let Some(compensator) = &mut self.scheme.compensator else {
+            return Ok(());
+        };
+        if let Some(input) = self.acting {
+            if std::mem::take(&mut self.lost) {
+                compensator.set_out_again();
+            }
+            let (prediction, outcome) = compensator.follow(input, Some(self.dt), output.value())?;
+            self.prediction = prediction;
+            status.adapted = outcome == Some(Outcome::Learned);
+            status.rejected |= outcome == Some(Outcome::Rejected);
+            status.stuck |= outcome.is_some_and(Outcome::is_stuck);
+        }
+        self.lost |= input == Some(Sensed::Broken);
+        Ok(())
+    }
+
+    /// Runs one sample with a given `command` for the input, without regard to the output: manual
+    /// operation, recordings, step tests. The model follows, and its inverse begins anew from there.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
@@ -255,8 +263,12 @@ impl Controller {
     ) -> Result<Action> {
         refuse_not_finite(command)?;
         self.pass(dt)?;
-        let (output, input, status) = self.read(reading);
-        Ok(self.act(command, f64::NAN, (output, input), status))
+        let (output, input, mut status) = self.read(reading);
+        self.follow((output, input), &mut status)?;
+        if let Some(compensator) = &mut self.scheme.compensator {
+            compensator.set_out_again();
+        }
+        Ok(self.act(command, self.prediction, (output, input), status))
     }
 
     /// Tells that `drive` has acted up to the next reading, where that is not the drive of the last

@@ -1,14 +1,12 @@
 //! Gives a loop up whose output is not known for too long.
 
-/// Times after which a controller gives its loop up. From then on the drive is the safe one
-/// ([`super::Controller::rest_drive`]), until [`super::Controller::go_on_from`]. `None` for never:
-/// who runs the loop then decides.
+/// Times after which a controller gives its loop up. From then on the drive is the safe one, until
+/// it is told to go on. `None` for never: who runs the loop then decides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Safety {
     /// Time without a finite reading of the output, s.
     pub lost_s: Option<f64>,
-    /// The same for a reading that stands still where it has to move
-    /// ([`super::Controller::stuck_s`]).
+    /// The same for a reading that stands still where it has to move ([`super::Standstill`]).
     pub stuck_s: Option<f64>,
 }
 
@@ -17,14 +15,14 @@ const ROUNDING: f64 = 0.01;
 
 /// How long there has been no reading, and whether the loop was given up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Silence {
+pub struct Silence {
     silent: f64,
     given_up: bool,
 }
 
 impl Silence {
     /// Takes a reading, and how long it has stood still where it has to move.
-    pub(super) fn push(&mut self, safety: Safety, reading: f64, stuck_s: Option<f64>, dt: f64) {
+    pub fn push(&mut self, safety: Safety, reading: f64, stuck_s: Option<f64>, dt: f64) {
         self.silent = match reading.is_finite() {
             true => 0.0,
             false => self.silent + dt,
@@ -36,7 +34,9 @@ impl Silence {
         self.given_up |= lost || stuck;
     }
 
-    pub(super) fn given_up(&self) -> bool {
+    /// Whether the loop was given up.
+    #[must_use]
+    pub fn given_up(&self) -> bool {
         self.given_up
     }
 }
