@@ -201,6 +201,42 @@
 #define HYSTERON_INTERNAL 106
 
 /**
+ * Flag of a sample: the drive or the command is at a limit, or the drive changes as fast as it
+ * may.
+ */
+#define HYSTERON_AT_LIMIT 1
+
+/**
+ * Flag of a sample: no input gives the reference. The nearest one was taken.
+ */
+#define HYSTERON_OUT_OF_REACH 2
+
+/**
+ * Flag of a sample: a reading was missing or held back. The loop went on without it.
+ */
+#define HYSTERON_NO_READING 4
+
+/**
+ * Flag of a sample: the output or the input stands still where it has to move.
+ */
+#define HYSTERON_STUCK 8
+
+/**
+ * Flag of a sample: the loop is given up, and the drive is the safe one.
+ */
+#define HYSTERON_SAFE 16
+
+/**
+ * Flag of a sample: the model learned from it.
+ */
+#define HYSTERON_ADAPTED 32
+
+/**
+ * Flag of a sample: the reading was taken as an outlier.
+ */
+#define HYSTERON_OUTLIER 64
+
+/**
  * How many numbers the stages behind the operators remember.
  */
 #define HYSTERON_BEHIND 8
@@ -473,6 +509,165 @@ typedef struct HysteronShift {
    */
   double load;
 } HysteronShift;
+
+/**
+ * The settings of a controller. `hysteron_control_default` fills them in.
+ */
+typedef struct HysteronControl {
+  /**
+   * Time between samples, s, above 0.
+   */
+  double interval_s;
+  /**
+   * Lowest drive, in its unit.
+   */
+  double drive_min;
+  /**
+   * Highest drive, above the lowest.
+   */
+  double drive_max;
+  /**
+   * Lowest command: the input that is asked for, in its unit. Without an inner loop the command
+   * is the drive.
+   */
+  double command_min;
+  /**
+   * Highest command, above the lowest.
+   */
+  double command_max;
+  /**
+   * The command without feedback, for a loop without a model.
+   */
+  double bias;
+  /**
+   * Reversals of the reference up to this are noise, in the output's unit, from 0.
+   */
+  double tolerance;
+  /**
+   * Feedback: gain, command per unit of the error. `NAN` for the inverse alone.
+   */
+  double gain;
+  /**
+   * Feedback: integral time, s; 0 for no such term.
+   */
+  double integral_s;
+  /**
+   * Feedback: derivative time, s; 0 for no such term.
+   */
+  double derivative_s;
+  /**
+   * Inner loop around the input: gain, power per unit of the input. `NAN` for no inner loop.
+   */
+  double inner_gain;
+  /**
+   * Inner loop: integral time, s; 0 for no such term.
+   */
+  double inner_integral_s;
+  /**
+   * Inner loop: derivative time, s; 0 for no such term.
+   */
+  double inner_derivative_s;
+  /**
+   * Time constant of the low-pass filter on both readings, s, from 0.
+   */
+  double filter_s;
+  /**
+   * Time after which equal readings of a sensor are no readings, s, above 0. `NAN` where they
+   * are normal, as those of a coarse converter.
+   */
+  double repeats_s;
+  /**
+   * The gate against spikes never holds back what deviates by this, in the output's unit, from
+   * 0. `NAN` for no gate.
+   */
+  double gate;
+  /**
+   * The fastest change of the drive, in its unit per second, above 0. `NAN` for no such limit.
+   */
+  double slew;
+  /**
+   * Time without a reading after which the loop is given up, s, above 0. `NAN` for never.
+   */
+  double lost_s;
+  /**
+   * The same for an output that stands still where it has to move.
+   */
+  double stuck_s;
+  /**
+   * Samples until a drive moves the output that is read, up to 1001. -1 for one more than the
+   * dead time of the model, without a model for none.
+   */
+  int32_t delay;
+  /**
+   * 1 for the policy *anticipate*, which takes the headings; 0 for *hold*, which does not.
+   */
+  int32_t anticipate;
+  /**
+   * 1 if the drive is the square root of the power of the inner loop, else 0.
+   */
+  int32_t square_root;
+  /**
+   * 1 if a sensor measures the input, else 0.
+   */
+  int32_t input_measured;
+} HysteronControl;
+
+/**
+ * What a controller does at a sample.
+ */
+typedef struct HysteronAction {
+  /**
+   * The input that is asked for.
+   */
+  double command;
+  /**
+   * The drive to write to the device.
+   */
+  double drive;
+  /**
+   * The output that the model expected at the last input, before it learned from the reading.
+   * `NAN` without a model.
+   */
+  double prediction;
+  /**
+   * The filtered output. `NAN` where there is no new valid reading.
+   */
+  double output;
+  /**
+   * The filtered input. `NAN` where there is none.
+   */
+  double input;
+  /**
+   * Flags, added: `HYSTERON_AT_LIMIT` to `HYSTERON_OUTLIER`.
+   */
+  int32_t status;
+} HysteronAction;
+
+/**
+ * What a controller is and knows beside its samples.
+ */
+typedef struct HysteronControllerInfo {
+  /**
+   * Time between samples, s.
+   */
+  double interval_s;
+  /**
+   * The safe drive: zero, or the one within the limits that is nearest.
+   */
+  double rest_drive;
+  /**
+   * How long the output has stood still where it has to move, s. `NAN` where its sensor works.
+   */
+  double stuck_s;
+  /**
+   * Samples until a drive moves the output that is read: how far ahead the reference is needed.
+   */
+  size_t due;
+  /**
+   * 1 while the predictions of a learner beside a fixed model are used, else 0.
+   */
+  int32_t trusts_learner;
+} HysteronControllerInfo;
 
 /**
  * Limits of the inverse. `hysteron_model_limits` writes those that a model has of its own.
@@ -830,6 +1025,110 @@ const char *hysteron_error_message(int32_t code);
 const char *hysteron_version(void);
 
 /**
+ * Fills in the settings of a loop that samples every `interval_s` seconds and drives from
+ * `drive_min` to `drive_max`. It has no feedback, filter, gate, slew, inner loop or safe state yet.
+ * The tolerance is the usual one of `model`, and 0 for `model` 0.
+ */
+int32_t hysteron_control_default(uint64_t model,
+                                 double interval_s,
+                                 double drive_min,
+                                 double drive_max,
+                                 struct HysteronControl *control);
+
+/**
+ * Makes a controller: a model and its inverse, feedback, or both. It is at rest.
+ *
+ * `model` is a fixed model, 0 for none. `learner` is one of `hysteron_adaptive_new` or
+ * `hysteron_adaptive_load_new` in memory of the library, 0 for none. Both are copied and stay the
+ * caller's. With both the learner is in the shadow of the model: it is used only while its
+ * predictions have been the better ones. Free the handle with `hysteron_controller_free`.
+ *
+ * Settings that no loop can run with are `HYSTERON_CONTROL`; the text names the field.
+ */
+int32_t hysteron_controller_new(const struct HysteronControl *control,
+                                uint64_t model,
+                                uint64_t learner,
+                                uint64_t *controller);
+
+/**
+ * Frees a controller.
+ */
+int32_t hysteron_controller_free(uint64_t controller);
+
+/**
+ * One sample of a loop that is closed: takes reference and readings, writes the drive to give. The
+ * drive is finite and within its limits, whatever the readings are.
+ *
+ * `dt` is the measured time since the sample before, s, above 0; `NAN` for the interval of the
+ * settings. `reference` is the output that is wanted now, `heading` the direction that the one
+ * that is due takes next, as in `hysteron_inverse_step`. `next` has the references of the `count`
+ * samples after this one; the inverse solves for the one that is due when this drive is seen to
+ * act (`due` of `hysteron_controller_info`), or for the last one that it is told. It may be null
+ * with `count` 0.
+ *
+ * `output` and `input` are readings; `NAN` for a sensor that gave nothing. `input` counts only with
+ * `input_measured`. A reference that is not finite is refused, and nothing is changed.
+ */
+int32_t hysteron_controller_step(uint64_t controller,
+                                 double dt,
+                                 double reference,
+                                 int32_t heading,
+                                 const double *next,
+                                 size_t count,
+                                 double output,
+                                 double input,
+                                 struct HysteronAction *action);
+
+/**
+ * One sample of a loop that is open: gives a `command` without regard to the output. For manual
+ * operation, recordings and step tests. Readings are as for `hysteron_controller_step`; limits and
+ * slew hold.
+ */
+int32_t hysteron_controller_command(uint64_t controller,
+                                    double dt,
+                                    double command,
+                                    double output,
+                                    double input,
+                                    struct HysteronAction *action);
+
+/**
+ * Goes on from `drive` at the next sample without a bump: from manual to automatic, and out of the
+ * safe state. The integral begins so that the first drive is this one; what it cannot take fades
+ * within ten samples.
+ */
+int32_t hysteron_controller_go_on_from(uint64_t controller, double drive);
+
+/**
+ * Tells that `drive` has acted up to the next reading, where that is not the drive of the last
+ * sample: before the first sample, or where a drive was lost on its way.
+ */
+int32_t hysteron_controller_applied(uint64_t controller, double drive);
+
+/**
+ * Lets the model follow a sample that somebody else has answered: `drive` acted up to `output`,
+ * which may be `NAN`. A run that goes on begins so.
+ */
+int32_t hysteron_controller_replay(uint64_t controller, double dt, double drive, double output);
+
+/**
+ * Gives the loop the weights of `model`, which were learned elsewhere: those of its fixed model, or
+ * of a learner in its shadow that does not learn itself. What the operators remember stays, and the
+ * drive does not jump. A model on another plane is `HYSTERON_CONTROL`.
+ */
+int32_t hysteron_controller_renew(uint64_t controller, uint64_t model);
+
+/**
+ * Makes a model with the weights that the loop has learned. Free it with `hysteron_model_free`.
+ * `HYSTERON_CONTROL` where nothing learns weights.
+ */
+int32_t hysteron_controller_model(uint64_t controller, uint64_t *model);
+
+/**
+ * Writes what a controller is and knows.
+ */
+int32_t hysteron_controller_info(uint64_t controller, struct HysteronControllerInfo *info);
+
+/**
  * The text of the last error in this thread, up to 1023 bytes.
  *
  * Copies as much of it as fits into the `size` bytes of `text`, with a zero byte at the end.
@@ -846,8 +1145,7 @@ size_t hysteron_last_error(char *text, size_t size);
 int32_t hysteron_model_limits(uint64_t model, struct HysteronLimits *limits);
 
 /**
- * Reads the model file at `path`. Free the handle with `hysteron_model_free`. States, batches and
- * learners take the inputs as they act: a dead time in the file (`delay`) is left to the caller.
+ * Reads the model file at `path`. Free the handle with `hysteron_model_free`.
  */
 int32_t hysteron_model_read(const char *path, uint64_t *model);
 
@@ -896,6 +1194,18 @@ int32_t hysteron_model_info(uint64_t model, struct HysteronModelInfo *info);
  * Writes what a model needs beside its input, and in which ranges.
  */
 int32_t hysteron_model_needs(uint64_t model, struct HysteronModelNeeds *needs);
+
+/**
+ * Writes the dead time of a model in samples that are `dt` s apart, `NAN` for those of its
+ * recording; 0 without one, at most 1000.
+ *
+ * An input that is given to a state, a lane or a learner acts so many samples later. Before the
+ * first sample the input stood where it is first. The time step of the second sample tells how
+ * many they are from there on. An inverse step gives the input at once that brings the target when
+ * it arrives: its `target` is the one of so many samples later. It leaves nothing under way in its
+ * state, so that forward steps need another one.
+ */
+int32_t hysteron_model_delay(uint64_t model, double dt, size_t *samples);
 
 /**
  * Copies the weights, row by row. Of a model that depends on a load, they are those without its
@@ -969,8 +1279,9 @@ int32_t hysteron_state_start(uint64_t state, int32_t start);
 
 /**
  * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
- * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
- * becomes the number of turning points, also if `capacity` is too small.
+ * input of the operators. A model with stages also needs `hysteron_state_save_stages`, one with a
+ * dead time `hysteron_state_save_inputs`. `count` becomes the number of turning points, also if
+ * `capacity` is too small.
  */
 int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
 
@@ -992,6 +1303,20 @@ int32_t hysteron_state_save_stages(uint64_t state, struct HysteronStageState *st
  * `hysteron_state_restore`, which puts the stages at rest with the next sample.
  */
 int32_t hysteron_state_restore_stages(uint64_t state, const struct HysteronStageState *stages);
+
+/**
+ * Saves the inputs that are under way: given, and not acting yet for the dead time of the model; at
+ * most `capacity`, from the one that arrives next. A model without a dead time needs it not.
+ * `count` becomes their number, also if `capacity` is too small.
+ */
+int32_t hysteron_state_save_inputs(uint64_t state, double *inputs, size_t capacity, size_t *count);
+
+/**
+ * Restores, bit for bit, what `hysteron_state_save_inputs` gave. Call it after
+ * `hysteron_state_restore`, which leaves nothing under way. More inputs than the dead time has
+ * samples are `HYSTERON_VALUE`.
+ */
+int32_t hysteron_state_restore_inputs(uint64_t state, const double *inputs, size_t count);
 
 /**
  * Writes the temperature after the last sample: the input itself for a model without a thermal

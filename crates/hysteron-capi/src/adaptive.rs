@@ -1,19 +1,30 @@
 //! Models that learn.
 
 use crate::fault::{Result, guard};
+use crate::late;
 use crate::learners::{LoadOfCaller, WeightsOfCaller};
+use crate::memory::Size;
 use crate::model::MODELS;
 use crate::objects::{LEARNERS, Learns};
 use crate::pointer::Arguments;
 use crate::shift_options::{HysteronShift, HysteronShiftOptions};
 use crate::steps::given;
 use crate::types::{self, HysteronAdaptation, HysteronLearning, status as status_constant};
-use hysteron::{Adaptation, Adaptive, AdaptiveLoad, Sample, Wanted};
+use hysteron::{Adaptation, Adaptive, AdaptiveLoad, Model, Sample, Wanted};
 use std::ffi::c_void;
 
 /// Calls `work` with a learner, in a function without pointers.
 fn with(adaptive: u64, work: impl FnOnce(&mut (dyn Learns + 'static)) -> Result<()>) -> Result<()> {
     LEARNERS.with(adaptive, "adaptive", &mut Arguments::default(), work)
+}
+
+/// Memory of a learner of weights, and of one of a load.
+fn weights_size(model: &Model, options: Adaptation<f64>) -> Result<Size> {
+    Ok(WeightsOfCaller::size(model, options.method)?.and(late::size(model)))
+}
+
+fn load_size(model: &Model) -> Size {
+    LoadOfCaller::size(model).and(late::size(model))
 }
 
 impl Arguments {
@@ -48,12 +59,8 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
             )
         };
         let model = MODELS.get(model, "model")?;
-        // A step in memory of the library takes no time yet.
-        if model.is_timed() {
-            model.plain()?;
-        }
-        let learner: Box<dyn Learns> = Box::new(Adaptive::new(&model, options)?);
-        out.set(LEARNERS.insert(learner.into())?);
+        let learner = Box::new(Adaptive::new(&model, options)?);
+        out.set(LEARNERS.insert(late::learns(&model, learner).into())?);
         Ok(())
     })
 }
@@ -69,7 +76,7 @@ pub unsafe extern "C" fn hysteron_adaptive_size(
     let options = unsafe { Arguments::default().adaptation(options) };
     let size = |options: Adaptation<f64>| {
         let model = MODELS.get(model, "model")?;
-        Ok(WeightsOfCaller::size(&model, options.method)?.bytes())
+        Ok(weights_size(&model, options)?.bytes())
     };
     options.and_then(size).unwrap_or(0)
 }
@@ -96,9 +103,10 @@ pub unsafe extern "C" fn hysteron_adaptive_place(
         };
         let model = MODELS.get(model, "model")?;
         let make = |lent: &mut _| -> Result<Box<dyn Learns>> {
-            Ok(Box::new(WeightsOfCaller::new(&model, options, lent)?))
+            let learner = Box::new(WeightsOfCaller::new(&model, options, lent)?);
+            Ok(late::learns_of_caller(&model, learner, lent))
         };
-        let size = WeightsOfCaller::size(&model, options.method)?;
+        let size = weights_size(&model, options)?;
         out.set(LEARNERS.place(room, size, make)?);
         Ok(())
     })
@@ -126,8 +134,8 @@ pub unsafe extern "C" fn hysteron_adaptive_load_new(
             )
         };
         let model = MODELS.get(model, "model")?;
-        let learner: Box<dyn Learns> = Box::new(AdaptiveLoad::new(&model, given(load), options)?);
-        out.set(LEARNERS.insert(learner.into())?);
+        let learner = Box::new(AdaptiveLoad::new(&model, given(load), options)?);
+        out.set(LEARNERS.insert(late::learns(&model, learner).into())?);
         Ok(())
     })
 }
@@ -136,8 +144,8 @@ pub unsafe extern "C" fn hysteron_adaptive_load_new(
 /// no such model.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_load_size(model: u64) -> usize {
-    let size = |model: &_| LoadOfCaller::size(model).bytes();
-    MODELS.get(model, "model").map_or(0, |model| size(&model))
+    let model = MODELS.get(model, "model");
+    model.map_or(0, |model| load_size(&model).bytes())
 }
 
 /// As `hysteron_adaptive_load_new`, with all numbers in `memory` of the caller, as in
@@ -163,14 +171,10 @@ pub unsafe extern "C" fn hysteron_adaptive_load_place(
         };
         let model = MODELS.get(model, "model")?;
         let make = |lent: &mut _| -> Result<Box<dyn Learns>> {
-            Ok(Box::new(LoadOfCaller::new(
-                &model,
-                given(load),
-                options,
-                lent,
-            )?))
+            let learner = Box::new(LoadOfCaller::new(&model, given(load), options, lent)?);
+            Ok(late::learns_of_caller(&model, learner, lent))
         };
-        out.set(LEARNERS.place(room, LoadOfCaller::size(&model), make)?);
+        out.set(LEARNERS.place(room, load_size(&model), make)?);
         Ok(())
     })
 }

@@ -1,8 +1,10 @@
 //! Batches by handle: many models with a state each, which move together.
 
 use crate::codes::HYSTERON_VALUE;
+use crate::delay::UnderWay;
 use crate::fault::{Fault, Result, guard};
 use crate::handles::Table;
+use crate::late;
 use crate::model::MODELS;
 use crate::objects::STATES;
 use crate::pointer::Arguments;
@@ -11,9 +13,56 @@ use crate::steps::given;
 use hysteron::{BatchModel, Surroundings};
 use std::sync::{Mutex, PoisonError};
 
-static BATCHES: Table<Mutex<BatchModel>> = Table::new(5);
+/// Lanes, and the inputs that are under way in each; none where no lane has a dead time.
+struct Batch {
+    lanes: BatchModel,
+    under_way: Vec<UnderWay<Vec<f64>>>,
+}
 
-fn with<T>(batch: u64, work: impl FnOnce(&mut BatchModel) -> Result<T>) -> Result<T> {
+impl From<BatchModel> for Batch {
+    fn from(lanes: BatchModel) -> Self {
+        let under_way = match lanes.models().all(|model| model.delay().is_none()) {
+            true => Vec::new(),
+            false => lanes.models().map(|model| late::under_way(model)).collect(),
+        };
+        Self { lanes, under_way }
+    }
+}
+
+impl Batch {
+    /// Moves the lanes by `work`, which takes the inputs that act. `input` has those of the lanes row
+    /// by row, and `dt` tells the time step of a sample. After an error nothing has moved.
+    fn pass(
+        &mut self,
+        input: &[f64],
+        dt: impl Fn(usize) -> Option<f64>,
+        work: impl FnOnce(&mut BatchModel, &[f64]) -> Result<()>,
+    ) -> Result<()> {
+        let lanes = self.under_way.len();
+        let whole = lanes > 0 && input.len().is_multiple_of(lanes);
+        if !whole || input.iter().any(|input| !input.is_finite()) {
+            // Without a dead time, or to be refused.
+            return work(&mut self.lanes, input);
+        }
+        let mut under_way = self.under_way.clone();
+        let mut acting = input.to_vec();
+        let rows = acting.chunks_mut((input.len() / lanes).max(1));
+        for (row, under_way) in rows.zip(&mut under_way) {
+            for (n, place) in row.iter_mut().enumerate() {
+                let (given, dt) = (*place, dt(n));
+                *place = under_way.acting(given, dt);
+                under_way.push(given, dt);
+            }
+        }
+        work(&mut self.lanes, &acting)?;
+        self.under_way = under_way;
+        Ok(())
+    }
+}
+
+static BATCHES: Table<Mutex<Batch>> = Table::new(5);
+
+fn with<T>(batch: u64, work: impl FnOnce(&mut Batch) -> Result<T>) -> Result<T> {
     let batch = BATCHES.get(batch, "batch")?;
     work(&mut batch.lock().unwrap_or_else(PoisonError::into_inner))
 }
@@ -41,7 +90,8 @@ pub unsafe extern "C" fn hysteron_batch_new(
         };
         let models = models.iter().map(|model| MODELS.get(*model, "models"));
         let models = models.collect::<Result<Vec<_>>>()?;
-        batch.set(BATCHES.insert(Mutex::new(models.into_iter().collect()))?);
+        let lanes: BatchModel = models.into_iter().collect();
+        batch.set(BATCHES.insert(Mutex::new(lanes.into()))?);
         Ok(())
     })
 }
@@ -53,7 +103,7 @@ pub unsafe extern "C" fn hysteron_batch_of(model: u64, lanes: usize, batch: *mut
         // SAFETY: the contract of the crate.
         let batch = unsafe { Arguments::default().out(batch, "batch")? };
         let made = BatchModel::new(MODELS.get(model, "model")?, lanes)?;
-        batch.set(BATCHES.insert(Mutex::new(made))?);
+        batch.set(BATCHES.insert(Mutex::new(made.into()))?);
         Ok(())
     })
 }
@@ -69,7 +119,8 @@ pub extern "C" fn hysteron_batch_free(batch: u64) -> i32 {
 pub extern "C" fn hysteron_batch_reset(batch: u64) -> i32 {
     guard(|| {
         with(batch, |batch| {
-            batch.reset();
+            batch.lanes.reset();
+            batch.under_way.iter_mut().for_each(UnderWay::clear);
             Ok(())
         })
     })
@@ -114,8 +165,15 @@ pub unsafe extern "C" fn hysteron_batch_step_in(
         };
         with(batch, |batch| {
             let load = (!load.is_empty()).then_some(load);
-            batch.step_in(input, given(dt), load, output.zeros())?;
-            Ok(())
+            let dt = given(dt);
+            batch.pass(
+                input,
+                |_| dt,
+                |lanes, acting| {
+                    lanes.step_in(acting, dt, load, output.zeros())?;
+                    Ok(())
+                },
+            )
         })
     })
 }
@@ -175,8 +233,16 @@ pub unsafe extern "C" fn hysteron_batch_run_in(
                 time: time.as_deref(),
                 load: (!load.is_empty()).then_some(load),
             };
-            batch.run_in(input, around, output.zeros())?;
-            Ok(())
+            let before = usize::from(given(last_time).is_some());
+            let dt = |n: usize| {
+                let at = (n + before).checked_sub(1)?;
+                let time = around.time?;
+                Some(time.get(at + 1)? - time.get(at)?)
+            };
+            batch.pass(input, dt, |lanes, acting| {
+                lanes.run_in(acting, around, output.zeros())?;
+                Ok(())
+            })
         })
     })
 }
@@ -189,12 +255,20 @@ pub unsafe extern "C" fn hysteron_batch_state(batch: u64, lane: usize, state: *m
         // SAFETY: the contract of the crate.
         let state = unsafe { Arguments::default().out(state, "state")? };
         let found = with(batch, |batch| {
-            let model = batch.models().nth(lane).cloned();
-            let found = model.zip(batch.states().nth(lane).cloned());
-            found.ok_or(Fault::Call(HYSTERON_VALUE, "lane"))
+            let model = batch.lanes.models().nth(lane).cloned();
+            let found = model.zip(batch.lanes.states().nth(lane).cloned());
+            let (model, copy) = found.ok_or(Fault::Call(HYSTERON_VALUE, "lane"))?;
+            let inputs = batch.under_way.get(lane).map(UnderWay::inputs);
+            Ok((
+                model,
+                copy,
+                inputs.into_iter().flatten().collect::<Vec<f64>>(),
+            ))
         });
-        let (model, copy) = found?;
-        state.set(STATES.insert(Running::object(model, copy))?);
+        let (model, copy, inputs) = found?;
+        let mut running = Running::boxed(model, copy);
+        running.restore_under_way(&inputs)?;
+        state.set(STATES.insert(running.into())?);
         Ok(())
     })
 }

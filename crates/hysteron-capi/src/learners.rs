@@ -5,6 +5,7 @@ use crate::memory::{Lent, Size};
 use crate::objects::{Learns, Moves, Start};
 use crate::path::{Core, CoreState, Path};
 use crate::shift_options::HysteronShift;
+use hysteron::control::Compensator;
 use hysteron::{Adaptation, Adaptive, AdaptiveLoad, Learning, Method, Model, Sample, Wanted};
 use hysteron_core::{
     Error, Estimator, ShiftEstimator, ShiftOptions, Solution, StageState, Stages, estimator_len,
@@ -14,15 +15,15 @@ use std::sync::Arc;
 
 impl Learns for Adaptive {
     fn step(&mut self, sample: Sample, measured: f64) -> Result<Learning<f64>> {
-        Ok(Adaptive::step(self, sample.input, measured)?)
+        Ok(Adaptive::step(self, sample, measured)?)
     }
 
     fn simulate(&mut self, sample: Sample) -> Result<f64> {
-        Ok(Adaptive::simulate(self, sample.input)?)
+        Ok(Adaptive::simulate(self, sample)?)
     }
 
     fn solve(&mut self, wanted: Wanted) -> Result<Solution<f64>> {
-        Ok(Adaptive::solve(self, wanted.target)?)
+        Ok(Adaptive::solve(self, wanted)?)
     }
 
     fn model(&self) -> Result<Model> {
@@ -49,6 +50,10 @@ impl Learns for Adaptive {
 
     fn roll_back(&mut self) -> Result<()> {
         Ok(Adaptive::roll_back(self)?)
+    }
+
+    fn in_loop(&self) -> Result<Compensator> {
+        Ok(Compensator::adaptive(self.clone()))
     }
 }
 
@@ -89,6 +94,10 @@ impl Learns for AdaptiveLoad {
             deviation: self.deviation(),
             load: self.load().unwrap_or(f64::NAN),
         })
+    }
+
+    fn in_loop(&self) -> Result<Compensator> {
+        Ok(Compensator::load(self.clone()))
     }
 }
 
@@ -185,7 +194,8 @@ impl Learns for WeightsOfCaller {
         let (weights, offset) = (self.estimator.parameters(), self.estimator.offset());
         let (operator, plane) = (self.model.operator(), *self.model.plane());
         let (offset, sign) = (self.factor() * offset, self.model.sign());
-        let mut model = Model::new(operator, plane, weights.to_vec(), offset, sign)?;
+        let model = Model::new(operator, plane, weights.to_vec(), offset, sign)?;
+        let mut model = model.with_delay(self.model.delay());
         (model.input, model.output) = (self.model.input.clone(), self.model.output.clone());
         Ok(model)
     }

@@ -24,12 +24,19 @@ mod adaptive;
 #[cfg(feature = "handles")]
 mod batch;
 mod codes;
+#[cfg(feature = "handles")]
+mod control;
+#[cfg(feature = "handles")]
+mod controller;
+mod delay;
 mod fault;
 /// cbindgen:ignore
 #[cfg(feature = "fmi")]
 pub mod fmi;
 mod handles;
 mod last_error;
+#[cfg(feature = "handles")]
+mod late;
 #[cfg(feature = "handles")]
 mod learners;
 #[cfg(feature = "handles")]
@@ -59,6 +66,10 @@ pub use adaptive::*;
 #[cfg(feature = "handles")]
 pub use batch::*;
 pub use codes::*;
+#[cfg(feature = "handles")]
+pub use control::*;
+#[cfg(feature = "handles")]
+pub use controller::*;
 pub use last_error::hysteron_last_error;
 #[cfg(feature = "handles")]
 pub use limits::*;

@@ -19,6 +19,14 @@ impl Size {
         numbers.saturating_add(self.turns.saturating_mul(size_of::<Turn<f64>>()))
     }
 
+    /// Both.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            numbers: self.numbers + other.numbers,
+            turns: self.turns + other.turns,
+        }
+    }
+
     /// `count` of them.
     pub(crate) fn times(self, count: usize) -> Self {
         Self {

@@ -4,6 +4,7 @@ use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, guard};
 use crate::handles::Table;
 use crate::pointer::Arguments;
+use crate::steps::given;
 use crate::types::{
     HysteronModelInfo, HysteronModelNeeds, operator, operator_kind as kind_of, sign as sign_of,
 };
@@ -13,8 +14,7 @@ use std::path::Path;
 
 pub(crate) static MODELS: Table<Model> = Table::new(1);
 
-/// Reads the model file at `path`. Free the handle with `hysteron_model_free`. States, batches and
-/// learners take the inputs as they act: a dead time in the file (`delay`) is left to the caller.
+/// Reads the model file at `path`. Free the handle with `hysteron_model_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u64) -> i32 {
     guard(|| {
@@ -155,6 +155,24 @@ pub unsafe extern "C" fn hysteron_model_needs(model: u64, needs: *mut HysteronMo
             active_min,
             active_max,
         });
+        Ok(())
+    })
+}
+
+/// Writes the dead time of a model in samples that are `dt` s apart, `NAN` for those of its
+/// recording; 0 without one, at most 1000.
+///
+/// An input that is given to a state, a lane or a learner acts so many samples later. Before the
+/// first sample the input stood where it is first. The time step of the second sample tells how
+/// many they are from there on. An inverse step gives the input at once that brings the target when
+/// it arrives: its `target` is the one of so many samples later. It leaves nothing under way in its
+/// state, so that forward steps need another one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_delay(model: u64, dt: f64, samples: *mut usize) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let samples = unsafe { Arguments::default().out(samples, "samples")? };
+        samples.set(MODELS.get(model, "model")?.delay().at(given(dt)));
         Ok(())
     })
 }

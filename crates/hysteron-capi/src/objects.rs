@@ -9,6 +9,7 @@ use crate::memory::{Lent, Room, Size};
 use crate::pointer::Arguments;
 use crate::shift_options::HysteronShift;
 use crate::types::{HYSTERON_START_FITTED, HYSTERON_START_OFF, HYSTERON_START_ON};
+use hysteron::control::Compensator;
 use hysteron::{Learning, Model, Sample, Wanted};
 use hysteron_core::{Output, STATE_NUMBERS, Solution};
 use std::ops::Range;
@@ -34,10 +35,25 @@ pub(crate) trait Moves: Send {
     fn restore(&mut self, turning_points: &[f64], input: f64) -> Result<()>;
     fn stage_numbers(&self) -> [f64; STATE_NUMBERS];
     fn restore_stages(&mut self, numbers: &[f64; STATE_NUMBERS]) -> Result<()>;
+    /// The number of inputs that are under way, and each of them.
+    fn under_way(&self, _: &mut dyn FnMut(f64)) -> usize {
+        0
+    }
+    fn restore_under_way(&mut self, inputs: &[f64]) -> Result<()> {
+        match inputs.is_empty() {
+            true => Ok(()),
+            false => too_many(),
+        }
+    }
     fn half_width(&self) -> Result<Option<f64>>;
     /// Notes where the state is, for [`Moves::undo`].
     fn keep(&mut self);
     fn undo(&mut self);
+}
+
+/// More inputs are to be under way than the dead time has samples.
+pub(crate) fn too_many() -> Result<()> {
+    Err(Fault::Call(HYSTERON_VALUE, "inputs"))
 }
 
 /// Where a state starts.
@@ -76,6 +92,10 @@ pub(crate) trait Learns: Send {
         Err(OTHER_KIND)
     }
     fn shift(&self) -> Result<HysteronShift> {
+        Err(OTHER_KIND)
+    }
+    /// A copy for a control loop.
+    fn in_loop(&self) -> Result<Compensator> {
         Err(OTHER_KIND)
     }
 }

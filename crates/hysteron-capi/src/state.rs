@@ -1,9 +1,11 @@
 //! States: made, started, saved and restored.
 
 use crate::fault::{Result, guard};
+use crate::late;
 use crate::limits::HysteronLimits;
+use crate::memory::Size;
 use crate::model::MODELS;
-use crate::objects::{Moves, Object, STATES, Start};
+use crate::objects::{Moves, STATES, Start};
 use crate::path::Path;
 use crate::pointer::Arguments;
 use crate::stage_state::HysteronStageState;
@@ -21,11 +23,15 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    /// An object for [`STATES`].
-    pub(crate) fn object(model: Arc<Model>, state: State) -> Object<dyn Moves> {
+    /// For an object of [`STATES`].
+    pub(crate) fn boxed(model: Arc<Model>, state: State) -> Box<dyn Moves> {
         let kept = None;
-        let running: Box<dyn Moves> = Box::new(Self { model, state, kept });
-        running.into()
+        let running = Box::new(Self {
+            model: model.clone(),
+            state,
+            kept,
+        });
+        late::moves(&model, running)
     }
 }
 
@@ -99,6 +105,11 @@ impl Moves for Running {
     }
 }
 
+/// Memory of a state.
+fn size(model: &Model) -> Size {
+    Path::size(model).and(late::size(model))
+}
+
 /// Calls `work` with a state, in a function without pointers.
 fn with<T>(state: u64, work: impl FnOnce(&mut (dyn Moves + 'static)) -> Result<T>) -> Result<T> {
     STATES.with(state, "state", &mut Arguments::default(), work)
@@ -117,7 +128,7 @@ pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 
         let out = unsafe { Arguments::default().out(state, "state")? };
         let model = MODELS.get(model, "model")?;
         let state = model.start();
-        out.set(STATES.insert(Running::object(model, state))?);
+        out.set(STATES.insert(Running::boxed(model, state).into())?);
         Ok(())
     })
 }
@@ -128,7 +139,7 @@ pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 
 pub extern "C" fn hysteron_state_size(model: u64) -> usize {
     MODELS
         .get(model, "model")
-        .map_or(0, |model| Path::size(&model).bytes())
+        .map_or(0, |model| size(&model).bytes())
 }
 
 /// As `hysteron_state_new`, with the numbers of the state in `memory` of the caller, aligned like a
@@ -154,9 +165,11 @@ pub unsafe extern "C" fn hysteron_state_place(
             )
         };
         let model = MODELS.get(model, "model")?;
-        let make =
-            |lent: &mut _| -> Result<Box<dyn Moves>> { Ok(Box::new(Path::new(&model, lent)?)) };
-        out.set(STATES.place(room, Path::size(&model), make)?);
+        let make = |lent: &mut _| -> Result<Box<dyn Moves>> {
+            let path = Box::new(Path::new(&model, lent)?);
+            Ok(late::moves_of_caller(&model, path, lent))
+        };
+        out.set(STATES.place(room, size(&model), make)?);
         Ok(())
     })
 }
@@ -190,8 +203,9 @@ pub extern "C" fn hysteron_state_start(state: u64, start: i32) -> i32 {
 }
 
 /// Saves the state: its turning points as normalised positions, at most `capacity`, and the last
-/// input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
-/// becomes the number of turning points, also if `capacity` is too small.
+/// input of the operators. A model with stages also needs `hysteron_state_save_stages`, one with a
+/// dead time `hysteron_state_save_inputs`. `count` becomes the number of turning points, also if
+/// `capacity` is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_save(
     state: u64,
@@ -279,6 +293,64 @@ pub unsafe extern "C" fn hysteron_state_restore_stages(
         let stages = unsafe { arguments.value(stages, "stages")? };
         STATES.with(state, "state", &mut arguments, |state| {
             state.restore_stages(&stages.numbers())
+        })
+    })
+}
+
+/// Saves the inputs that are under way: given, and not acting yet for the dead time of the model; at
+/// most `capacity`, from the one that arrives next. A model without a dead time needs it not.
+/// `count` becomes their number, also if `capacity` is too small.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_save_inputs(
+    state: u64,
+    inputs: *mut f64,
+    capacity: usize,
+    count: *mut usize,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let (inputs, count) = unsafe {
+            (
+                arguments.array_out(inputs, capacity, "inputs")?,
+                arguments.out(count, "count")?,
+            )
+        };
+        STATES.with(state, "state", &mut arguments, |state| {
+            let needed = state.under_way(&mut |_| ());
+            count.set(needed);
+            let found = capacity;
+            if found < needed {
+                return Err(Error::MemoryTooSmall { needed, found }.into());
+            }
+            let mut n = 0;
+            state.under_way(&mut |input| {
+                inputs.set(n, input);
+                n += 1;
+            });
+            Ok(())
+        })
+    })
+}
+
+/// Restores, bit for bit, what `hysteron_state_save_inputs` gave. Call it after
+/// `hysteron_state_restore`, which leaves nothing under way. More inputs than the dead time has
+/// samples are `HYSTERON_VALUE`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_restore_inputs(
+    state: u64,
+    inputs: *const f64,
+    count: usize,
+) -> i32 {
+    guard(|| {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let inputs = unsafe { arguments.array(inputs, count, "inputs")? };
+        if let Some(index) = inputs.iter().position(|input| !input.is_finite()) {
+            return Err(Error::InputNotFinite { index }.into());
+        }
+        STATES.with(state, "state", &mut arguments, |state| {
+            state.restore_under_way(inputs)
         })
     })
 }

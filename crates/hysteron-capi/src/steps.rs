@@ -25,12 +25,12 @@ struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    /// A model that does not depend on time takes no notice of it. An array without elements is
+    /// A model that does not read the time takes no notice of it. An array without elements is
     /// none.
     fn new(model: &Model, time: &'a [f64], last_time: f64, load: &'a [f64]) -> Self {
         let series = |values: &'a [f64]| (!values.is_empty()).then_some(values);
         Self {
-            time: series(time).filter(|_| model.is_timed()),
+            time: series(time).filter(|_| model.reads_time()),
             last_time,
             load: series(load),
         }

@@ -155,7 +155,11 @@ fn learner(adaptive: u64) {
 
 #[test]
 fn nothing_is_allocated_over_the_callers_memory() {
-    for text in [PLAIN, WHOLE, BY_LOAD] {
+    let late = PLAIN.replace(
+        "\"version\": 1",
+        "\"version\": 4, \"delay\": {\"samples\": 3, \"interval_s\": 0.1}",
+    );
+    for text in [PLAIN, WHOLE, BY_LOAD, &late] {
         let (model, mut adaptive) = (parsed(text), 0);
         state(model);
         let mut memory = vec![0_u64; hysteron_adaptive_load_size(model) / 8];

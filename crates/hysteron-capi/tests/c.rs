@@ -14,7 +14,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 const SANITIZE: &str = "-fsanitize=address,undefined";
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 9] = [
     "main.c",
     "vector.c",
     "vector_stages.c",
@@ -22,6 +22,7 @@ const SOURCES: [&str; 8] = [
     "batch.c",
     "memory.c",
     "stages.c",
+    "control.c",
     "misuse.c",
 ];
 
@@ -280,6 +281,17 @@ fn the_page_on_c() {
     run(&mut shell(commands));
     for name in names {
         run(&mut shell(name));
+    }
+    // The page on loops.
+    let (_, program) = programs::page("c-loop.md");
+    std::fs::write(folder.path().join("spring.c"), program).unwrap();
+    run(&mut shell(commands));
+    for name in names {
+        let told = shell(name).output().unwrap();
+        let told = String::from_utf8(told.stdout).unwrap();
+        let missed = told.split(", off by ").nth(1).unwrap();
+        let missed: f64 = missed.split(' ').next().unwrap().parse().unwrap();
+        assert!(missed.abs() < 0.05, "{told}");
     }
     // The fourth one follows a load, and finds it.
     let program = page.split("```c\n").nth(4).unwrap();

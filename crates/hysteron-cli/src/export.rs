@@ -2,9 +2,9 @@
 
 use crate::args;
 use crate::terminal::{Result, print};
-use hysteron::control::{Gains, Scheme};
+use hysteron::control::{Gains, Safety, Scheme};
 use hysteron::{Model, Remedy, Setting};
-use hysteron_export::{ArduinoOptions, CControl, COptions, CSampling, Fmu, FmuOptions};
+use hysteron_export::{ArduinoOptions, COptions, CSampling, Fmu, FmuOptions};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
@@ -105,10 +105,10 @@ fn c(args: &args::ExportC) -> Result<()> {
     if !export.stages.is_empty() {
         lines.push(format!("stages: {}", export.stages.join(", ")));
     }
+    lines.extend(dead_time(&model, args.dt));
     if !export.inverse {
         lines.push("weights below zero: the C runs forward only".into());
     }
-    lines.extend(hysteron_export::delay_note(&model, args.dt));
     print(&lines.join("\n"))
 }
 
@@ -161,12 +161,12 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
         );
     }
     lines.push(loop_text(&control));
-    lines.extend(hysteron_export::delay_note(&model, Some(args.dt)));
+    lines.extend(dead_time(&model, Some(args.dt)));
     print(&lines.join("\n"))
 }
 
 /// A loop around a model, with gains from it where none are given.
-fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> Result<CControl> {
+fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> Result<Scheme> {
     let mut scheme = Scheme {
         tolerance: model.usual_tolerance(),
         delay: Some(1 + model.delay().at(Some(dt))),
@@ -181,11 +181,11 @@ fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> 
     });
     // As of `run`.
     let (lost_s, stuck_s) = hysteron_bench::Safety::usual(dt);
-    Ok(CControl {
-        lost_s,
-        stuck_s,
-        scheme,
-    })
+    scheme.safety = Safety {
+        lost_s: Some(lost_s),
+        stuck_s: Some(stuck_s),
+    };
+    Ok(scheme)
 }
 
 fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
@@ -202,25 +202,25 @@ fn sampling(model: &Model, dt: Option<f64>, drive: Option<(f64, f64)>) -> CSampl
     }
 }
 
-fn loop_json(control: &CControl) -> serde_json::Value {
+fn loop_json(scheme: &Scheme) -> serde_json::Value {
     json!({
-        "dt": control.scheme.interval_s,
-        "gains": control.scheme.pid,
-        "drive": [control.scheme.drives.0, control.scheme.drives.1],
-        "delay_samples": control.scheme.delay,
-        "tolerance": control.scheme.tolerance,
-        "lost_s": control.lost_s,
-        "stuck_s": control.stuck_s,
+        "dt": scheme.interval_s,
+        "gains": scheme.pid,
+        "drive": [scheme.drives.0, scheme.drives.1],
+        "delay_samples": scheme.delay,
+        "tolerance": scheme.tolerance,
+        "lost_s": scheme.safety.lost_s,
+        "stuck_s": scheme.safety.stuck_s,
     })
 }
 
-fn loop_text(control: &CControl) -> String {
+fn loop_text(scheme: &Scheme) -> String {
     let Scheme {
         pid,
         interval_s,
         drives: (low, high),
         ..
-    } = &control.scheme;
+    } = scheme;
     let gains = pid.map_or(String::new(), |gains| {
         format!(
             "gain {:.3e}, integral time {:.3e} s, derivative time {:.3e} s, ",
@@ -239,7 +239,13 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let fmu = hysteron_export::fmu(&model, &options, target)?;
+    let fmu = match args.dt.zip(args.drive_range).filter(|_| args.controller) {
+        None => hysteron_export::fmu(&model, &options, target)?,
+        Some((dt, drives)) => {
+            let scheme = control(&model, dt, drives, args.gains)?;
+            hysteron_export::fmu_controlled(&model, &scheme, &options, target)?
+        }
+    };
     let file = args.out.display().to_string();
     let Fmu {
         name,
@@ -260,14 +266,19 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     let (inputs, outputs) = (inputs.join(", "), outputs.join(", "));
     let kib = bytes.div_ceil(1024);
     let block = format!("{file}: block {name}, {inputs} -> {outputs}, {kib} KiB");
-    let note = hysteron_export::delay_note(&model, None);
-    print(
-        &[Some(block), note]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join("\n"),
-    )
+    let lines: Vec<String> = [Some(block), dead_time(&model, None)]
+        .into_iter()
+        .flatten()
+        .collect();
+    print(&lines.join("\n"))
+}
+
+/// What an export carries of a dead time, where there is one.
+fn dead_time(model: &Model, dt: Option<f64>) -> Option<String> {
+    let (samples, seconds) = (model.delay().at(dt), model.delay().seconds());
+    // A clock is rounded; a nanosecond is no part of a time that one gives.
+    let seconds = (seconds * 1e9).round() / 1e9;
+    (!model.delay().is_none()).then(|| format!("dead time: {seconds} s or {samples} samples"))
 }
 
 /// The model, at a load where one is given.

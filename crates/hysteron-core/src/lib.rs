@@ -22,6 +22,7 @@
 
 mod adapt;
 mod branch;
+pub mod control;
 mod definition;
 mod error;
 mod everett;

@@ -3,8 +3,9 @@
 mod board;
 mod texts;
 
-use crate::c::{CControl, CExport, COptions, CReal, CSampling, c_texts_controlled};
+use crate::c::{CExport, COptions, CReal, CSampling, c_texts_controlled};
 pub use board::{Board, BoardMemory};
+use hysteron::control::Scheme;
 use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use std::path::{Path, PathBuf};
@@ -39,21 +40,21 @@ pub struct Arduino {
 /// Files of an earlier export that were not edited since are replaced, all together or not at all.
 ///
 /// ```
-/// use hysteron::control::{Gains, Scheme};
+/// use hysteron::control::{Gains, Safety, Scheme};
 /// use hysteron::{Model, Operator, Plane, Sign};
-/// use hysteron_export::{ArduinoOptions, Board, CControl, CSampling, arduino};
+/// use hysteron_export::{ArduinoOptions, Board, CSampling, arduino};
 /// let plane = Plane::new(0.0, 1.0, 20)?;
 /// let model = Model::new(Operator::Mkp, plane, vec![0.05; 210], 0.0, Sign::Positive)?;
 /// let gains = Gains { gain: 0.02, integral_s: 0.5, derivative_s: 0.0 };
-/// let scheme = Scheme { pid: Some(gains), ..Scheme::new(0.05, (0.0, 1.0)) };
-/// let control = CControl { scheme, lost_s: 0.5, stuck_s: 1.0 };
+/// let safety = Safety { lost_s: Some(0.5), stuck_s: Some(1.0) };
+/// let scheme = Scheme { pid: Some(gains), safety, ..Scheme::new(0.05, (0.0, 1.0)) };
 /// let options = ArduinoOptions {
 ///     name: None,
 ///     source: "wire.json".as_ref(),
 ///     board: Board::Uno,
 /// };
 /// let folder = tempfile::tempdir()?;
-/// let made = arduino(&model, folder.path(), &options, &CSampling::default(), &control)?;
+/// let made = arduino(&model, folder.path(), &options, &CSampling::default(), &scheme)?;
 /// assert!(made.memory.ram <= Board::Uno.ram().unwrap());
 /// assert!(folder.path().join("examples/standalone/standalone.ino").exists());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -66,7 +67,7 @@ pub fn arduino<'a>(
     target: impl Into<Destination<'a>>,
     options: &ArduinoOptions<'_>,
     sampling: &CSampling,
-    control: &CControl,
+    scheme: &Scheme,
 ) -> Result<Arduino> {
     let target = target.into();
     let c = COptions {
@@ -75,7 +76,7 @@ pub fn arduino<'a>(
         source: options.source,
         adaptation: false,
     };
-    let (mut export, sources) = c_texts_controlled(model, &c, sampling, Some(control), true)?;
+    let (mut export, sources) = c_texts_controlled(model, &c, sampling, Some(scheme), true)?;
     let memory = BoardMemory::of(&export, options.board).map_err(|what| {
         let remedy = "fit with less {}, or name another {}";
         let settings = [Setting::any("levels"), Setting::any("board")];

@@ -3,6 +3,7 @@
 mod algorithm;
 mod constants;
 mod control;
+mod delay;
 mod learners;
 mod name;
 mod notation;
@@ -14,9 +15,9 @@ mod stages;
 mod text;
 mod written;
 
-use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, STAGES};
+use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, DELAY, STAGES};
 use constants::Constants;
-pub use control::CControl;
+use hysteron::control::Scheme;
 use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use learners::Learners;
@@ -53,8 +54,9 @@ pub struct COptions<'a> {
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
 /// in that type as well. A model with negative weights has no inverse there either.
 ///
-/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`]. The code
-/// takes inputs as they act; a dead time is left to its caller ([`crate::delay_note`]).
+/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`]. One with a
+/// dead time ([`Model::delay`]) has `hysteron_mcu_delay.h`, `.c` too, which delay its inputs by
+/// `NAME_LATE` samples.
 ///
 /// Files that were exported before, and not edited since, are replaced, all together or not at all.
 /// A path alone as `target` replaces others of their names too; [`Destination::keeping_foreign`]
@@ -117,19 +119,21 @@ pub fn c_sampled<'a>(
 
 /// As [`c_sampled`], with a control loop around the model: `hysteron_mcu_control.h`, `.c`, with
 /// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
-/// of [`hysteron::control::Controller`] with the fixed model as its compensator.
+/// of [`hysteron::control::Controller`] with the fixed model as its compensator, which
+/// stands in the place of that of `scheme`. A filter, a gate and an inner loop are not to be had
+/// there.
 ///
 /// # Errors
 /// As [`c_sampled`]; [`Error::Export`] too for a model with a load or without an inverse, and for
-/// settings that the target does not have ([`CControl::scheme`]).
+/// settings that the target does not have.
 pub fn c_controlled<'a>(
     model: &Model,
     target: impl Into<Destination<'a>>,
     options: &COptions<'_>,
     sampling: &CSampling,
-    control: &CControl,
+    scheme: &Scheme,
 ) -> Result<CExport> {
-    let texts = c_texts_controlled(model, options, sampling, Some(control), false)?;
+    let texts = c_texts_controlled(model, options, sampling, Some(scheme), false)?;
     write(target.into(), texts, options)
 }
 
@@ -174,13 +178,13 @@ pub(crate) fn c_texts_controlled(
     model: &Model,
     options: &COptions<'_>,
     sampling: &CSampling,
-    control: Option<&CControl>,
+    scheme: Option<&Scheme>,
     alone: bool,
 ) -> Result<(CExport, Vec<String>)> {
     let name = name::choose(options.name, options.source)?;
     match options.real {
-        CReal::Float => texts::<f32>(model, options, name, sampling, (control, alone)),
-        CReal::Double => texts::<f64>(model, options, name, sampling, (control, alone)),
+        CReal::Float => texts::<f32>(model, options, name, sampling, (scheme, alone)),
+        CReal::Double => texts::<f64>(model, options, name, sampling, (scheme, alone)),
     }
 }
 
@@ -189,7 +193,7 @@ fn texts<T: Number>(
     options: &COptions<'_>,
     name: String,
     sampling: &CSampling,
-    (control, alone): (Option<&CControl>, bool),
+    (scheme, alone): (Option<&Scheme>, bool),
 ) -> Result<(CExport, Vec<String>)> {
     let constants = Constants::<T>::new(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
@@ -207,15 +211,18 @@ fn texts<T: Number>(
         false => None,
     };
     let learned = learners.as_ref().map(|learners| learners.text(&name));
-    let controlled = match control {
-        None => None,
-        Some(control) => {
-            control::check(control, model, &constants, sampling.dt)?;
+    // A controller has inputs under way of its own.
+    let dead = model.delay().at(sampling.dt);
+    let dead = Some(dead).filter(|dead| *dead > 0 && scheme.is_none());
+    let around = match scheme {
+        None => dead.map(|dead| delay::text(&name, dead)),
+        Some(scheme) => {
+            control::check(scheme, model, &constants, sampling.dt)?;
             let staged = constants.stages.is_some();
-            Some(control::text::<T>(control, model, (&name, staged))?)
+            Some(control::text::<T>(scheme, model, (&name, staged))?)
         }
     };
-    let late = control.map(|control| control::late(&control.scheme, model));
+    let late = scheme.map(|scheme| control::late(scheme, model));
     let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
@@ -224,10 +231,11 @@ fn texts<T: Number>(
         _ => &[&ALGORITHM],
     };
     let mut algorithm = parts.concat();
-    if control.is_some() {
+    if scheme.is_some() {
         algorithm.extend(CONTROL);
         algorithm.extend(constants.stages.iter().flat_map(|_| CONTROL_STAGES));
     }
+    algorithm.extend(dead.iter().flat_map(|_| DELAY));
     let own = ["h", "c"].map(|end| format!("{name}.{end}"));
     let files = algorithm.iter().map(|(file, _)| *file);
     let files = files.chain(own.iter().map(String::as_str));
@@ -258,7 +266,7 @@ fn texts<T: Number>(
         format!("/* hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
-    let (source, beside) = (options.source, (learned.as_ref(), controlled.as_ref()));
+    let (source, beside) = (options.source, (learned.as_ref(), around.as_ref()));
     texts.push(text::header(&export, &constants, model, source, beside));
     texts.push(text::source(&export, &constants, beside));
     let sealed = texts.iter().map(|text| seal::sealed(text)).collect();

@@ -4,6 +4,7 @@
 //! read the model from the FMU's resources.
 
 mod binaries;
+mod control;
 mod description;
 mod model_text;
 mod options;
@@ -12,8 +13,10 @@ mod staged;
 mod units;
 mod variables;
 
+use hysteron::control::Scheme;
 use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
 use hysteron_files::{AtomicFile, Own};
+use options::Block;
 pub use options::{Fmi, FmuOptions};
 use sha2::{Digest, Sha256};
 
@@ -38,8 +41,8 @@ pub struct Fmu {
 /// whatever file is there.
 ///
 /// A model that depends on time takes the communication step as its time step. One that depends on
-/// a load has the load as an input. The block takes inputs as they act; a dead time is left to its
-/// caller ([`crate::delay_note`]).
+/// a load has the load as an input. Of a model with a dead time the input acts so much later, in
+/// communication steps; the inverse is asked for the output of then.
 ///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};
@@ -63,7 +66,57 @@ pub fn fmu<'a>(
     options: &FmuOptions,
     target: impl Into<Destination<'a>>,
 ) -> Result<Fmu> {
-    let target = target.into();
+    write(model, options, block(options), target.into())
+}
+
+/// The block that is no controller.
+fn block(options: &FmuOptions) -> Block<'static> {
+    match options.inverse {
+        false => Block::Forward,
+        true => Block::Inverse,
+    }
+}
+
+/// As [`fmu`], of a controller: the model and its inverse in a loop with the settings of `scheme`,
+/// whose compensator the model is. From reference and reading it gives the drives of
+/// [`hysteron::control::Controller`]. Its gains, limits and times are parameters of the block. The
+/// sample time is the communication step. [`FmuOptions::inverse`] counts for nothing.
+///
+/// ```
+/// use hysteron::control::{Gains, Scheme};
+/// use hysteron::{Model, Operator, Plane, Sign};
+/// use hysteron_export::{FmuOptions, fmu_controlled};
+/// let plane = Plane::new(0.0, 1.0, 3)?;
+/// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+/// let gains = Gains { gain: 0.02, integral_s: 0.5, derivative_s: 0.0 };
+/// let scheme = Scheme { pid: Some(gains), ..Scheme::new(0.05, (0.0, 1.0)) };
+/// let folder = tempfile::tempdir()?;
+/// let target = folder.path().join("sf_Controller_MKP.fmu");
+/// let made = fmu_controlled(&model, &scheme, &FmuOptions::default(), &target)?;
+/// assert_eq!(made.inputs[..2], ["target", "measured"]);
+/// assert_eq!(made.outputs, ["input", "status"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`fmu`]; [`Error::Export`] too for a model with a load, and for a filter, a gate or an inner
+/// loop; as [`hysteron::control::Controller::new`].
+pub fn fmu_controlled<'a>(
+    model: &Model,
+    scheme: &Scheme,
+    options: &FmuOptions,
+    target: impl Into<Destination<'a>>,
+) -> Result<Fmu> {
+    control::check(model, scheme)?;
+    write(model, options, Block::Controller(scheme), target.into())
+}
+
+fn write(
+    model: &Model,
+    options: &FmuOptions,
+    block: Block<'_>,
+    target: Destination<'_>,
+) -> Result<Fmu> {
     let path = target.path();
     if path
         .extension()
@@ -74,7 +127,7 @@ pub fn fmu<'a>(
             "{path}: tools know an FMU by the end of its name: let it end with .fmu"
         )));
     }
-    let (made, bytes) = fmu_bytes(model, options)?;
+    let (made, bytes) = bytes(model, options, block)?;
     AtomicFile::create(target, Own::Marked(package::is_ours))?.commit_with(&bytes)?;
     Ok(made)
 }
@@ -84,18 +137,24 @@ pub fn fmu<'a>(
 /// # Errors
 /// As [`fmu`], but for its path.
 pub fn fmu_bytes(model: &Model, options: &FmuOptions) -> Result<(Fmu, Vec<u8>)> {
+    bytes(model, options, block(options))
+}
+
+fn bytes(model: &Model, options: &FmuOptions, block: Block<'_>) -> Result<(Fmu, Vec<u8>)> {
     staged::check(model)?;
-    if options.inverse {
+    if !block.is_forward() {
         model.inverse()?;
     }
-    let name = match (&options.name, options.inverse) {
+    let name = match (&options.name, block) {
         (Some(name), _) => identifier(name)?,
-        (None, false) => "sf_MKP",
-        (None, true) => "sf_Inverse_MKP",
+        (None, Block::Forward) => "sf_MKP",
+        (None, Block::Inverse) => "sf_Inverse_MKP",
+        (None, Block::Controller(_)) => "sf_Controller_MKP",
     };
-    let variables = variables::all(model, options.inverse)?;
-    let describe = |token: &str| description::xml(model, (name, token), options, &variables);
-    let text = |token: &str| model_text::write(model, options.inverse, token);
+    let variables = variables::all(model, block)?;
+    let about = (options.fmi, block);
+    let describe = |token: &str| description::xml(model, (name, token), about, &variables);
+    let text = |token: &str| model_text::write(model, block, token);
     let token = token(&describe("")?, &text("")?);
     let files = package::Files {
         description: describe(&token)?,

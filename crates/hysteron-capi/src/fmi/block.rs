@@ -1,8 +1,10 @@
-//! The two blocks: model and inverse, with offset and sign.
+//! The blocks: model, inverse and controller, with offset and sign.
 
 use super::by_load::ByLoad;
+use super::controller::{Control, Loop, Settings};
 use super::stages::Constants;
 use super::{Problem, Result};
+use crate::delay::{MOST, UnderWay};
 use hysteron_core::{
     Clipped, Direction, Model, Output, Placed, Sample, Solution, StageState, Stages, Target, Turn,
     Wanted, turn_capacity,
@@ -15,6 +17,10 @@ pub(crate) struct State {
     pub(crate) stages: StageState<f64>,
     /// The model at the present load, where the weights depend on the load.
     pub(crate) mixed: Option<Mixed>,
+    /// The inputs that do not act yet.
+    pub(crate) under_way: UnderWay<Vec<f64>>,
+    /// The rest of a controller, whose inverse is above.
+    pub(crate) own: Option<Box<Loop>>,
 }
 
 /// Operators at one load.
@@ -30,6 +36,8 @@ pub(crate) enum Kind {
     Forward,
     /// `sf_Inverse_MKP`: the inverse, from the wanted output to the input.
     Inverse,
+    /// `sf_Controller_MKP`: both in a loop, from reference and reading to the input.
+    Controller,
 }
 
 /// A model as in the FMU: `output = offset + sign · Σ μ γ`, with the stages around it.
@@ -49,6 +57,9 @@ pub(crate) struct Block {
     /// Weights that depend on the load. `model` is then that of the first part, and `stages` is
     /// there.
     pub(crate) by_load: Option<ByLoad>,
+    /// The dead time: samples, and s.
+    pub(crate) dead: (usize, f64),
+    pub(crate) control: Control,
     /// Turning points and input of the operators at the start; `None` for all of them off.
     pub(crate) start: Option<(Vec<f64>, f64)>,
     /// The start values of signal and load in the FMU's description.
@@ -68,6 +79,13 @@ pub(crate) struct Inputs {
     pub(crate) tolerance: f64,
     /// Whether all operators are on at the start.
     pub(crate) start_on: bool,
+    /// Of a controller: the output that was read, NaN where there is none; by how much the
+    /// reference will have changed when the drive is seen to act; manual operation and its drive.
+    pub(crate) measured: f64,
+    pub(crate) ahead: f64,
+    pub(crate) manual: bool,
+    pub(crate) manual_drive: f64,
+    pub(crate) settings: Settings,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,8 +105,13 @@ impl Block {
             signal,
             load,
             heading: 0,
-            tolerance: 0.0,
+            tolerance: self.control.tolerance,
             start_on: false,
+            measured: signal,
+            ahead: 0.0,
+            manual: false,
+            manual_drive: 0.0,
+            settings: self.control.settings,
         }
     }
 
@@ -108,7 +131,21 @@ impl Block {
         stages.is_some_and(|stages| stages.core(self.offset, self.sign).is_ok_and(is))
     }
 
+    /// The inverse needs none: its input acts later, and so is its target.
+    fn under_way(&self) -> UnderWay<Vec<f64>> {
+        let is_late = self.kind == Kind::Forward && self.dead.0 > 0;
+        UnderWay::new(self.dead, vec![0.0; if is_late { MOST } else { 0 }])
+    }
+
     pub(crate) fn start(&self, on: bool) -> Result<State> {
+        let mut state = self.begin(on)?;
+        if self.kind == Kind::Controller {
+            state.own = Some(Box::new(Loop::new(self, state.clone())));
+        }
+        Ok(state)
+    }
+
+    fn begin(&self, on: bool) -> Result<State> {
         let memory = vec![Turn::default(); turn_capacity(self.model.plane().levels())];
         let mut operators = self.model.state(memory)?;
         match &self.start {
@@ -123,6 +160,8 @@ impl Block {
                 model: self.model.clone(),
                 placed: None,
             }),
+            under_way: self.under_way(),
+            own: None,
         })
     }
 
@@ -132,6 +171,7 @@ impl Block {
         for (what, number, needed) in [
             ("input", inputs.signal, self.kind == Kind::Forward),
             ("target", inputs.signal, self.kind == Kind::Inverse),
+            ("reference", inputs.signal, self.kind == Kind::Controller),
             ("load", inputs.load, self.is_loaded()),
         ] {
             if needed && !number.is_finite() {
@@ -141,7 +181,12 @@ impl Block {
         }
         let (signal, flag) = match self.kind {
             Kind::Forward => {
-                let step = self.forward(state, inputs, dt)?;
+                let acting = Inputs {
+                    signal: state.under_way.acting(inputs.signal, Some(dt)),
+                    ..*inputs
+                };
+                let step = self.forward(state, &acting, dt)?;
+                state.under_way.push(inputs.signal, Some(dt));
                 let flag = match step.clipped {
                     None => 0,
                     Some(Clipped::Low) => -1,
@@ -153,6 +198,17 @@ impl Block {
                 let Solution { input, status } = self.inverse(state, inputs, dt)?;
                 (input, status.number().into())
             }
+            Kind::Controller => {
+                let Some(mut own) = state.own.take() else {
+                    return Err(Problem::new("the loop was lost"));
+                };
+                let done = match dt > 0.0 {
+                    true => self.control(state, &mut own, inputs, dt),
+                    false => Ok(own.at_rest(inputs)),
+                };
+                state.own = Some(own);
+                return done;
+            }
         };
         Ok(Outputs {
             signal,
@@ -161,7 +217,12 @@ impl Block {
         })
     }
 
-    fn forward(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Output<f64>> {
+    pub(super) fn forward(
+        &self,
+        state: &mut State,
+        inputs: &Inputs,
+        dt: f64,
+    ) -> Result<Output<f64>> {
         let Some(stages) = &self.stages else {
             let step = self.model.step(&mut state.operators, inputs.signal)?;
             let output = self.offset + self.sign * step.output;
@@ -182,7 +243,12 @@ impl Block {
         Ok(stages.step(model, &mut state.operators, &mut state.stages, sample)?)
     }
 
-    fn inverse(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Solution<f64>> {
+    pub(super) fn inverse(
+        &self,
+        state: &mut State,
+        inputs: &Inputs,
+        dt: f64,
+    ) -> Result<Solution<f64>> {
         let Some(stages) = &self.stages else {
             let inverse = self.model.inverse()?;
             let solution = inverse.step(&mut state.operators, self.inward(inputs))?;

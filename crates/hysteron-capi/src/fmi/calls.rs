@@ -235,6 +235,8 @@ mod tests {
             sign: 1.0,
             stages: None,
             by_load: None,
+            dead: (0, 0.0),
+            control: crate::fmi::controller::Control::NONE,
             start: None,
             first: (0.0, 0.0),
         };

@@ -13,6 +13,7 @@ compile_error!("handles stand where the standards have pointers: 64 bits are nee
 mod block;
 mod by_load;
 mod calls;
+mod controller;
 pub mod fmi2;
 pub mod fmi3;
 mod instance;

@@ -45,16 +45,32 @@
 //!
 //! Versions 4 and 5 are versions 2 and 3 with a line for each constant of every stage, in the order in
 //! which the stages are declared. They are written where a stage is there that version 2 does not
-//! have.
+//! have. Versions 6 and 7 are versions 4 and 5 of a model with a dead time. After `output` they have
+//! its samples and seconds:
+//!
+//! ```text
+//! delay 3 0.15
+//! ```
+//!
+//! A controller has one more line after `block`: tolerance, range of the output, gain, integral and
+//! derivative time, lowest and highest drive, slew, times until a missing and a stuck reading end
+//! the loop:
+//!
+//! ```text
+//! block controller
+//! control 0.1 10.0 0.5 0.2 0.0 0.0 1.0 5.0 0.5 1.0
+//! ```
 //!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
 //! fewest digits that give the same number when it is read.
 
 use super::block::{Block, Kind};
 use super::by_load::ByLoad;
+use super::controller::Control;
 use super::lines::{Fault, Lines, Parsed};
 use super::stages::{Constants, More};
 use super::{Problem, Result, checksum};
+use crate::delay::MOST;
 use hysteron_core::{Model, Operator, Plane, operator_count, table_len};
 use std::path::Path;
 
@@ -64,6 +80,8 @@ const HEAD: &str = "hysteron-fmu 1";
 const HEAD_STAGES: [&str; 2] = ["hysteron-fmu 2", "hysteron-fmu 4"];
 /// That of a model whose weights depend on the load.
 const HEAD_PARTS: [&str; 2] = ["hysteron-fmu 3", "hysteron-fmu 5"];
+/// Those of a model with a dead time, without and with such weights.
+const HEAD_LATE: [&str; 2] = ["hysteron-fmu 6", "hysteron-fmu 7"];
 
 /// Reads the model in the folder of the FMU's resources. Errors name file and line.
 pub(crate) fn read(folder: &Path) -> Result<Block> {
@@ -97,8 +115,9 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     })?;
     let mut lines = Lines::new(text);
     let head = lines.next()?;
-    let by_load = HEAD_PARTS.contains(&head);
-    if !(head == HEAD || by_load || HEAD_STAGES.contains(&head)) {
+    let is_late = HEAD_LATE.contains(&head);
+    let by_load = HEAD_PARTS.contains(&head) || head == HEAD_LATE[1];
+    if !(head == HEAD || by_load || is_late || HEAD_STAGES.contains(&head)) {
         let head: String = head.chars().take(2 * HEAD.len()).collect();
         return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
     }
@@ -106,7 +125,12 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     let kind = match lines.entry("block")? {
         ["forward"] => Kind::Forward,
         ["inverse"] => Kind::Inverse,
+        ["controller"] => Kind::Controller,
         [other] => return lines.fault(format!("there is no block `{other}`")),
+    };
+    let control = match kind {
+        Kind::Controller => Control::read(&mut lines)?,
+        Kind::Forward | Kind::Inverse => Control::NONE,
     };
     let [token] = lines.entry("token")?;
     let operator = match lines.entry("operator")? {
@@ -129,10 +153,21 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         "-1" => -1.0,
         other => return lines.fault(format!("the sign {other} is neither 1 nor -1")),
     };
+    let dead = match is_late {
+        false => (0, 0.0),
+        true => {
+            let [samples, seconds] = lines.entry("delay")?;
+            let (samples, seconds) = (lines.number(samples)?, lines.finite(seconds)?);
+            if !(1..=MOST).contains(&samples) || seconds <= 0.0 {
+                return lines.fault(format!("`delay`, 1 to {MOST} samples and s are expected"));
+            }
+            (samples, seconds)
+        }
+    };
     let more = match head == HEAD {
         true => None,
         false => {
-            let whole = head == HEAD_STAGES[1] || head == HEAD_PARTS[1];
+            let whole = is_late || head == HEAD_STAGES[1] || head == HEAD_PARTS[1];
             Some(More::read(&mut lines, whole)?)
         }
     };
@@ -163,7 +198,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         let table = vec![0.0; table_len(levels)];
         let model = Model::new(plane, operator, &weights, table)
             .or_else(|error| lines.fault(error.to_string()))?;
-        if kind == Kind::Inverse {
+        if kind != Kind::Forward {
             model
                 .inverse()
                 .or_else(|error| lines.fault(error.to_string()))?;
@@ -184,10 +219,12 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         sign,
         stages: None,
         by_load,
+        dead,
+        control,
         start: None,
         first: match kind {
             Kind::Forward => (plane.bottom(), 0.0),
-            Kind::Inverse => (offset + sign * model.output_range().0, 0.0),
+            Kind::Inverse | Kind::Controller => (offset + sign * model.output_range().0, 0.0),
         },
         model,
     };
@@ -291,11 +328,13 @@ mod tests {
     #[test]
     fn a_fault_with_the_right_checksum_is_named() {
         let cases = [
-            (1, "hysteron-fmu 6", "`hysteron-fmu 6` where"),
+            (1, "hysteron-fmu 8", "`hysteron-fmu 8` where"),
             (1, "hysteron-fmu 2", "`first` is expected"),
             (1, "hysteron-fmu 3", "`first` is expected"),
             (1, "hysteron-fmu 4", "`first` is expected"),
             (1, "hysteron-fmu 5", "`first` is expected"),
+            (1, "hysteron-fmu 6", "`delay` and 2 value"),
+            (1, "hysteron-fmu 7", "`delay` and 2 value"),
             (2, "block sideways", "no block"),
             (2, "block", "`block` and 1 value"),
             (4, "operator", "`operator` and 1 value"),

@@ -1,6 +1,6 @@
 //! Saved states, in memory and as bytes.
 
-use super::block::{Block, Inputs, Outputs};
+use super::block::{Block, Inputs, Kind, Outputs};
 use super::instance::{Instance, Phase, Run};
 use super::{Problem, Result, checksum};
 use crate::handles::Table;
@@ -81,17 +81,29 @@ impl Instance {
     }
 
     pub(crate) fn serialised(&self, handle: u64) -> Result<Vec<u8>> {
+        self.is_serial()?;
         Ok(self.saved(handle)?.bytes(&self.block))
     }
 
+    /// A loop remembers more than the bytes have.
+    fn is_serial(&self) -> Result<()> {
+        match self.block.kind {
+            Kind::Controller => Err(Problem::new(
+                "the states of a controller cannot be serialised, as its description says",
+            )),
+            Kind::Forward | Kind::Inverse => Ok(()),
+        }
+    }
+
     pub(crate) fn deserialise(&mut self, bytes: &[u8]) -> Result<u64> {
+        self.is_serial()?;
         let run = Run::of_bytes(&self.block, bytes)?;
         self.keep(run)
     }
 }
 
 /// The first word: the kind of data and the version of the format.
-const MARK: u64 = u64::from_le_bytes(*b"hysfmu02");
+const MARK: u64 = u64::from_le_bytes(*b"hysfmu03");
 const PHASES: [Phase; 4] = [
     Phase::Instantiated,
     Phase::Initialising,
@@ -125,7 +137,8 @@ impl Run {
             .into_iter()
             .chain(stages)
             .chain(operators)
-            .chain(points);
+            .chain(points)
+            .chain(self.state.under_way.inputs().map(f64::to_bits));
         let mut bytes: Vec<u8> = words.flat_map(u64::to_le_bytes).collect();
         bytes.extend(checksum(&bytes).to_le_bytes());
         bytes
@@ -165,9 +178,11 @@ impl Run {
             ));
         }
         let whole = checksum(&bytes[..8 * (words.len() - 1)]) == *sum;
-        if !whole || !cut.is_empty() || *count != points.len() as u64 {
+        let of_operators = usize::try_from(*count).ok();
+        let split = of_operators.and_then(|count| points.split_at_checked(count));
+        let Some((points, under_way)) = split.filter(|_| whole && cut.is_empty()) else {
             return Err(broken());
-        }
+        };
         if *model != block.checksum {
             return Err(Problem::new(
                 "the serialised state belongs to another model",
@@ -188,6 +203,11 @@ impl Run {
             .model
             .restore(&mut state.operators, &points, number(input))?;
         state.stages = StageState::from_numbers(&stages.map(f64::from_bits))?;
+        let under_way: Vec<f64> = under_way.iter().map(number).collect();
+        if !under_way.iter().all(|input| input.is_finite()) || !state.under_way.restore(&under_way)
+        {
+            return Err(broken());
+        }
         let run = Self {
             phase: *usize::try_from(*phase)
                 .ok()
@@ -201,6 +221,7 @@ impl Run {
                 heading: one(heading, 1)?,
                 tolerance: number(band),
                 start_on: *start_on == 1,
+                ..block.inputs()
             },
             outputs: Outputs {
                 signal: number(result),

@@ -1,6 +1,7 @@
 //! The variables of a block by their value references, as in the FMU's description.
 
 use super::block::{Block, Inputs, Kind};
+use super::controller::SETTINGS;
 use super::instance::{Instance, Phase};
 use super::{Problem, Result};
 
@@ -18,6 +19,20 @@ const START_ON: u32 = 6;
 const LOAD: u32 = 7;
 /// Of a model with a thermal body.
 const TEMPERATURE: u32 = 8;
+/// Of a controller: the reading, the change of the reference until the drive acts, manual operation
+/// and its drive.
+const MEASURED: u32 = 9;
+const AHEAD: u32 = 10;
+const MANUAL: u32 = 11;
+const MANUAL_DRIVE: u32 = 12;
+/// The first of its settings.
+const SETTING: u32 = 13;
+
+/// The place of a variable among the settings of a controller.
+fn setting(kind: Kind, reference: u32) -> Option<usize> {
+    let place = reference.checked_sub(SETTING)? as usize;
+    (kind == Kind::Controller && place < SETTINGS).then_some(place)
+}
 
 /// A type of the FMU's variables.
 pub(crate) trait Value: Copy {
@@ -32,10 +47,16 @@ impl Value for f64 {
             (TIME, _) => Ok(instance.time()),
             (SIGNAL, _) => Ok(inputs.signal),
             (RESULT, _) => Ok(instance.outputs()?.signal),
-            (TOLERANCE, Kind::Inverse) => Ok(inputs.tolerance),
+            (TOLERANCE, Kind::Inverse | Kind::Controller) => Ok(inputs.tolerance),
+            (MEASURED, Kind::Controller) => Ok(inputs.measured),
+            (AHEAD, Kind::Controller) => Ok(inputs.ahead),
+            (MANUAL_DRIVE, Kind::Controller) => Ok(inputs.manual_drive),
             (LOAD, _) if instance.block().is_loaded() => Ok(inputs.load),
             (TEMPERATURE, _) if instance.block().has_body() => Ok(instance.outputs()?.temperature),
-            _ => unknown("floating-point", reference),
+            (_, kind) => match setting(kind, reference) {
+                Some(place) => Ok(*{ inputs.settings }.numbers()[place]),
+                None => unknown("floating-point", reference),
+            },
         }
     }
 
@@ -46,16 +67,22 @@ impl Value for f64 {
             (LOAD, _) if block.is_loaded() => inputs.load = self,
             (TEMPERATURE, _) if block.has_body() => return output(reference),
             // Written so that NaN fails the comparison.
-            (TOLERANCE, Kind::Inverse) if self >= 0.0 && self.is_finite() => {
+            (MEASURED, Kind::Controller) => inputs.measured = self,
+            (AHEAD, Kind::Controller) => inputs.ahead = self,
+            (MANUAL_DRIVE, Kind::Controller) => inputs.manual_drive = self,
+            (TOLERANCE, Kind::Inverse | Kind::Controller) if self >= 0.0 && self.is_finite() => {
                 inputs.tolerance = self
             }
-            (TOLERANCE, Kind::Inverse) => {
+            (TOLERANCE, Kind::Inverse | Kind::Controller) => {
                 return Err(Problem(format!(
                     "`tolerance` is {self}: a finite number from 0 on is needed"
                 )));
             }
             (TIME | RESULT, _) => return output(reference),
-            _ => return unknown("floating-point", reference),
+            (_, kind) => match setting(kind, reference) {
+                Some(place) => *inputs.settings.numbers()[place] = self,
+                None => return unknown("floating-point", reference),
+            },
         }
         Ok(())
     }
@@ -65,15 +92,15 @@ impl Value for i32 {
     fn get(instance: &Instance, reference: u32) -> Result<Self> {
         match (reference, instance.block().kind) {
             (FLAG, _) => Ok(instance.outputs()?.flag),
-            (HEADING, Kind::Inverse) => Ok(instance.inputs().heading),
+            (HEADING, Kind::Inverse | Kind::Controller) => Ok(instance.inputs().heading),
             _ => unknown("integer", reference),
         }
     }
 
     fn set(self, inputs: &mut Inputs, block: &Block, reference: u32) -> Result<()> {
         match (reference, block.kind, self) {
-            (HEADING, Kind::Inverse, -1..=1) => inputs.heading = self,
-            (HEADING, Kind::Inverse, _) => {
+            (HEADING, Kind::Inverse | Kind::Controller, -1..=1) => inputs.heading = self,
+            (HEADING, Kind::Inverse | Kind::Controller, _) => {
                 return Err(Problem(format!(
                     "`heading` is {self}: -1, 0 or 1 is needed"
                 )));
@@ -87,15 +114,17 @@ impl Value for i32 {
 
 impl Value for bool {
     fn get(instance: &Instance, reference: u32) -> Result<Self> {
-        match reference {
-            START_ON => Ok(instance.inputs().start_on),
+        match (reference, instance.block().kind) {
+            (START_ON, _) => Ok(instance.inputs().start_on),
+            (MANUAL, Kind::Controller) => Ok(instance.inputs().manual),
             _ => unknown("boolean", reference),
         }
     }
 
-    fn set(self, inputs: &mut Inputs, _: &Block, reference: u32) -> Result<()> {
-        match reference {
-            START_ON => inputs.start_on = self,
+    fn set(self, inputs: &mut Inputs, block: &Block, reference: u32) -> Result<()> {
+        match (reference, block.kind) {
+            (START_ON, _) => inputs.start_on = self,
+            (MANUAL, Kind::Controller) => inputs.manual = self,
             _ => return unknown("boolean", reference),
         }
         Ok(())

@@ -33,6 +33,7 @@ void handles(void);
 void batches(void);
 void memory_form(void);
 void stages(void);
+void control(void);
 void misuse(void);
 
 #endif

@@ -9,6 +9,7 @@ int main(int count, char **arguments) {
         batches();
         memory_form();
         stages();
+        control();
         misuse();
     }
     puts("ok");

@@ -2,8 +2,9 @@
 // Some of the functions take handles alone: the macro below does not know which.
 #![allow(unused_unsafe)]
 
+use hysteron::control::Scheme;
 use hysteron_capi::fmi::{fmi2, fmi3};
-use hysteron_export::{Fmi, FmuOptions, fmu};
+use hysteron_export::{Fmi, Fmu, FmuOptions, fmu, fmu_controlled};
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::path::{Path, PathBuf};
 use std::ptr::{null, null_mut};
@@ -17,6 +18,11 @@ pub const TOLERANCE: u32 = 5;
 pub const START_ON: u32 = 6;
 pub const LOAD: u32 = 7;
 pub const TEMPERATURE: u32 = 8;
+pub const MEASURED: u32 = 9;
+pub const AHEAD: u32 = 10;
+pub const MANUAL: u32 = 11;
+pub const MANUAL_DRIVE: u32 = 12;
+pub const GAIN: u32 = 13;
 
 /// One place after the other, but every so many under Miri, which takes a thousand times as long.
 pub fn stride(under_miri: usize) -> usize {
@@ -40,6 +46,23 @@ impl Unpacked {
             name: None,
         };
         let made = fmu(model, &options, &path).unwrap();
+        Self::of(folder, made, fmi)
+    }
+
+    /// A controller.
+    pub fn controller(model: &hysteron::Model, scheme: &Scheme, fmi: Fmi) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a b.fmu");
+        let options = FmuOptions {
+            fmi,
+            ..FmuOptions::default()
+        };
+        let made = fmu_controlled(model, scheme, &options, &path).unwrap();
+        Self::of(folder, made, fmi)
+    }
+
+    fn of(folder: tempfile::TempDir, made: Fmu, fmi: Fmi) -> Self {
+        let path = folder.path().join("a b.fmu");
         let mut archive = zip::ZipArchive::new(std::fs::File::open(&path).unwrap()).unwrap();
         archive.extract(folder.path().join("ä b%")).unwrap();
         Self {

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod api;
+mod control;
+mod delay;
 mod misuse;
 mod staged;
 mod states;

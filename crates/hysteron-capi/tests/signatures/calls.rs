@@ -1,8 +1,8 @@
 //! The table: one row for a function.
 
 use super::Argument::{
-    Characters, Doubles, Integers, Json, Limits, Memory, ModelHandle, Options, Path, ShiftOptions,
-    Word,
+    Characters, Control, Doubles, Integers, Json, Limits, Memory, ModelHandle, Options, Path,
+    ShiftOptions, Word,
 };
 use super::{Call, LEVELS, WEIGHTS, adaptive_load_size, adaptive_size, state_size};
 use hysteron_capi::*;
@@ -13,6 +13,8 @@ const SERIES: super::Argument = Doubles(&[0.5, 1.0, 0.25]);
 const TIMES: super::Argument = Doubles(&[0.0, 1.0, 1.5]);
 const LOADS: super::Argument = Doubles(&[1.0, 2.0, 1.25]);
 const ROOM: super::Argument = Doubles(&[0.0; 16]);
+/// As many numbers as an action has.
+const ACTION: super::Argument = Doubles(&[0.0; 6]);
 const SPRING: super::Argument = Doubles(&WEIGHTS);
 
 /// `name(pointers: what they point to) = the arguments of the call`, `h` the handles.
@@ -57,6 +59,11 @@ calls! {
         (h.plain_batch, input.cast(), output.cast(), 3);
     hysteron_batch_step_in(input: SERIES, load: LOADS, output: SERIES) |h|
         (h.batch, input.cast(), 0.1, load.cast(), output.cast(), 3);
+    hysteron_controller_new(control: Control, controller: Word) |h|
+        (control.cast(), h.model, 0, controller.cast());
+    hysteron_controller_step(next: SERIES, action: ACTION) |h| (
+        h.controller, f64::NAN, 1.0, HYSTERON_HOLD, next.cast(), 3, 0.5, f64::NAN, action.cast()
+    );
     hysteron_headings(target: SERIES, heading: Integers(3)) |_h|
         (target.cast(), 3, 0.0, heading.cast());
     hysteron_inverse_run(
@@ -92,6 +99,8 @@ calls! {
         (h.model, memory, state_size(h), state.cast());
     hysteron_state_save(points: ROOM, count: Word, input: ONE) |h|
         (h.state, points.cast(), 16, count.cast(), input.cast());
+    hysteron_state_save_inputs(inputs: ROOM, count: Word) |h|
+        (h.state, inputs.cast(), 16, count.cast());
     hysteron_step(output: ONE, clipped: Integers(1)) |h|
         (h.state, 0.5, output.cast(), clipped.cast());
     hysteron_step_in(output: ONE, clipped: Integers(1)) |h|

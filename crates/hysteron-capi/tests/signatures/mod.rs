@@ -36,6 +36,7 @@ pub enum Argument {
     ModelHandle,
     Options,
     Limits,
+    Control,
     /// The path of a model file, and its text.
     Path,
     Json,
@@ -54,6 +55,7 @@ pub struct Handles {
     pub adaptive: u64,
     pub batch: u64,
     pub plain_batch: u64,
+    pub controller: u64,
 }
 
 impl Handles {
@@ -62,7 +64,7 @@ impl Handles {
         std::fs::write(folder.path().join("model.json"), MODEL_TEXT).unwrap();
         let (mut model, mut state, mut adaptive) = (0, 0, 0);
         let (mut other, mut loaded) = (0, 0);
-        let (mut batch, mut plain_batch) = (0, 0);
+        let (mut batch, mut plain_batch, mut controller) = (0, 0, 0);
         let count = WEIGHTS.len();
         // SAFETY: live memory of the sizes given.
         let made = unsafe {
@@ -84,9 +86,10 @@ impl Handles {
                 hysteron_state_new(other, &mut loaded),
                 hysteron_batch_of(other, 3, &mut batch),
                 hysteron_batch_of(model, 3, &mut plain_batch),
+                hysteron_controller_new(&control(), model, 0, &mut controller),
             ]
         };
-        assert_eq!(made, [HYSTERON_OK; 7]);
+        assert_eq!(made, [HYSTERON_OK; 8]);
         Self {
             folder,
             model,
@@ -95,6 +98,7 @@ impl Handles {
             adaptive,
             batch,
             plain_batch,
+            controller,
         }
     }
 
@@ -111,6 +115,15 @@ pub fn options() -> HysteronAdaptation {
     let filled = unsafe { hysteron_adaptation_default(HYSTERON_INCREMENTS, &mut options) };
     assert_eq!(filled, HYSTERON_OK);
     options
+}
+
+pub fn control() -> HysteronControl {
+    // SAFETY: all fields are numbers.
+    let mut control = unsafe { std::mem::zeroed() };
+    // SAFETY: a live structure.
+    let filled = unsafe { hysteron_control_default(0, 0.1, 0.0, 1.0, &mut control) };
+    assert_eq!(filled, HYSTERON_OK);
+    control
 }
 
 pub fn shift_options() -> HysteronShiftOptions {
@@ -156,6 +169,7 @@ impl Argument {
             Self::Word | Self::ModelHandle => size_of::<u64>(),
             Self::Options => size_of::<HysteronAdaptation>(),
             Self::Limits => size_of::<HysteronLimits>(),
+            Self::Control => size_of::<HysteronControl>(),
             Self::Path | Self::Json => self.text(handles).map_or(0, |text| text.len()),
             Self::ShiftOptions => size_of::<HysteronShiftOptions>(),
             Self::Memory(bytes) => bytes(handles),
@@ -196,6 +210,8 @@ impl Argument {
             Self::Options => unsafe { place.cast::<HysteronAdaptation>().write(options()) },
             // SAFETY: the place has room for it.
             Self::Limits => unsafe { place.cast::<HysteronLimits>().write(LIMITS) },
+            // SAFETY: the place has room for it.
+            Self::Control => unsafe { place.cast::<HysteronControl>().write(control()) },
             // SAFETY: the place has room for it.
             Self::ShiftOptions => unsafe {
                 place.cast::<HysteronShiftOptions>().write(shift_options());

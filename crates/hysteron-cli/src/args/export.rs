@@ -153,10 +153,36 @@ pub(crate) struct ExportFmu {
     /// The inverse instead of the model: from the wanted output to the input
     #[arg(long)]
     pub(crate) inverse: bool,
+    /// A controller instead of the model: from the wanted and the measured output to the drive
+    #[arg(
+        long,
+        requires = "dt",
+        requires = "drive_range",
+        conflicts_with = "inverse"
+    )]
+    pub(crate) controller: bool,
+    /// Gains of its PID: gain, integral time and derivative time in s [default: from the model, by
+    /// simulation]
+    #[arg(long, value_name = "GAIN,S,S", value_parser = parse_gains, allow_hyphen_values = true,
+        requires = "controller")]
+    pub(crate) gains: Option<Gains>,
+    /// Its sample time, which the communication step has to be
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_hyphen_values = true,
+        requires = "controller"
+    )]
+    pub(crate) dt: Option<f64>,
+    /// Its lowest and highest drive
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true,
+        requires = "controller")]
+    pub(crate) drive_range: Option<(f64, f64)>,
     /// The standard: FMI 2.0 or 3.0
     #[arg(long, value_enum, default_value = "2")]
     pub(crate) fmi: Fmi,
-    /// Name of the block, a C identifier [default: sf_MKP, with --inverse sf_Inverse_MKP]
+    /// Name of the block, a C identifier [default: sf_MKP, with --inverse
+    /// sf_Inverse_MKP, with --controller sf_Controller_MKP]
     #[arg(long)]
     pub(crate) name: Option<String>,
     /// Take the model at this load; without it the load is an input of the block

@@ -173,11 +173,11 @@ fn a_fit_finds_what_a_play_does_late_and_tells_it() {
 }
 
 #[test]
-fn exports_say_that_they_take_inputs_as_they_act() {
+fn exports_carry_the_dead_time() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     models(folder);
-    let note = "the dead time, 0.2 s or 2 samples";
+    let note = "dead time: 0.2 s or 2 samples";
     for (line, file) in [
         ("export c late.json -o mcu", Some("mcu/late.h")),
         ("export fmu late.json -o late.fmu", None),

@@ -40,6 +40,18 @@ pub(super) const ADAPTATION: [(&str, &str); 5] = [
     ),
 ];
 
+/// The same for a model with a dead time.
+pub(super) const DELAY: [(&str, &str); 2] = [
+    (
+        "hysteron_mcu_delay.h",
+        include_str!("../../mcu/hysteron_mcu_delay.h"),
+    ),
+    (
+        "hysteron_mcu_delay.c",
+        include_str!("../../mcu/hysteron_mcu_delay.c"),
+    ),
+];
+
 /// The same for a control loop.
 pub(super) const CONTROL: [(&str, &str); 2] = [
     (

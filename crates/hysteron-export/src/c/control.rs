@@ -7,29 +7,16 @@ use hysteron::control::Scheme;
 use hysteron::{Error, Model, Policy, Remedy, Result, Setting, Sign};
 use std::fmt::Write;
 
-/// A control loop on the target, around the model that is exported.
-#[derive(Debug, Clone)]
-pub struct CControl {
-    /// Its settings, as of [`hysteron::control::Controller`]. The model that is exported stands in
-    /// the place of the compensator. A filter, a gate and an inner loop are not to be had there.
-    pub scheme: Scheme,
-    /// Time without a reading after which the drive is the safe one, s; 0 for never.
-    pub lost_s: f64,
-    /// The same for a reading that stands still where it has to move.
-    pub stuck_s: f64,
-}
-
 /// Sums of intervals that differ by less than this share are one time, as in the library.
 const ROUNDING: f64 = 1e-9;
 
 /// Refuses what the loop cannot do on the target.
 pub(super) fn check<T: Number>(
-    control: &CControl,
+    scheme: &Scheme,
     model: &Model,
     constants: &Constants<T>,
     dt: Option<f64>,
 ) -> Result<()> {
-    let CControl { scheme, .. } = control;
     let refused = |what: &str| Err(Error::Export(what.into()));
     if model.load.is_some() {
         let remedy = Remedy::new("export it at one load with {}", [Setting::any("load")]);
@@ -55,11 +42,7 @@ pub(super) fn check<T: Number>(
         compensator: None,
         ..scheme.clone()
     })?;
-    let times = [control.lost_s, control.stuck_s];
-    match times.iter().all(|time| *time >= 0.0 && time.is_finite()) {
-        true => Ok(()),
-        false => refused("times until the drive is safe must be finite and from zero on"),
-    }
+    Ok(())
 }
 
 /// Samples by which the output answers a drive too late.
@@ -69,11 +52,10 @@ pub(super) fn late(scheme: &Scheme, model: &Model) -> usize {
 }
 
 pub(super) fn text<T: Number>(
-    control: &CControl,
+    scheme: &Scheme,
     model: &Model,
     (name, staged): (&str, bool),
 ) -> Result<Beside> {
-    let CControl { scheme, .. } = control;
     let shout = name.to_uppercase();
     let late = late(scheme, model);
     let gains = scheme.pid.unwrap_or(hysteron::control::Gains {
@@ -98,8 +80,8 @@ pub(super) fn text<T: Number>(
             "repeats_s",
             scheme.stuck_s.unwrap_or(0.0) * (1.0 - ROUNDING),
         ),
-        ("lost_s", control.lost_s),
-        ("stuck_s", control.stuck_s),
+        ("lost_s", scheme.safety.lost_s.unwrap_or(0.0)),
+        ("stuck_s", scheme.safety.stuck_s.unwrap_or(0.0)),
     ];
     let mut defined = format!(
         "\nconst hys_control {name}_control = {{\n    .model = &{},\n    .late = {late},\n",

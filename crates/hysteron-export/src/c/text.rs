@@ -28,7 +28,7 @@ pub(super) fn header<T: Number>(
     constants: &Constants<T>,
     model: &Model,
     source: &Path,
-    (learned, control): (Option<&Beside>, Option<&Beside>),
+    (learned, around): (Option<&Beside>, Option<&Beside>),
 ) -> String {
     let CExport { name, levels, .. } = export;
     let shout = name.to_uppercase();
@@ -99,7 +99,6 @@ pub(super) fn header<T: Number>(
     ];
     let staged = constants.stages.as_ref();
     lines.extend(staged.into_iter().flat_map(|staged| remarks(model, staged)));
-    lines.extend(crate::delay_note(model, export.dt));
     let (mut sizes, mut weights) = (String::new(), start_declared(export, constants));
     if let (Some(bytes), Some(learned)) = (memory.adaptation, learned) {
         lines.push(format!(
@@ -108,11 +107,19 @@ pub(super) fn header<T: Number>(
         sizes.clone_from(&learned.sizes);
         weights += &learned.declared;
     }
-    if let Some(control) = control {
-        sizes += &control.sizes;
-        weights += &control.declared;
+    if !model.delay().is_none() {
+        // A clock is rounded; a nanosecond is no part of a time that one gives.
+        let seconds = (model.delay().seconds() * 1e9).round() / 1e9;
+        let samples = model.delay().at(export.dt);
+        lines.push(format!(
+            "dead time: {seconds} s or {samples} samples until an input acts"
+        ));
     }
-    let include = control.and_then(|control| control.include);
+    if let Some(around) = around {
+        sizes += &around.sizes;
+        weights += &around.declared;
+    }
+    let include = around.and_then(|around| around.include);
     let include = include.map_or(String::new(), |file| format!("#include \"{file}\"\n"));
     if staged.is_some_and(|staged| staged.parts.is_some()) {
         sizes += &format!("#define {shout}_TABLE {}\n", table_len(*levels));

@@ -1,8 +1,9 @@
 //! `modelDescription.xml`.
 
+use super::Fmi;
+use super::options::Block;
 use super::units;
 use super::variables::{Kind, Variable};
-use super::{Fmi, FmuOptions};
 use hysteron::{Error, Model, Result};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
@@ -14,11 +15,17 @@ type Xml = Writer<Vec<u8>>;
 pub(super) fn xml(
     model: &Model,
     (name, token): (&str, &str),
-    options: &FmuOptions,
+    (fmi, block): (Fmi, Block<'_>),
     variables: &[Variable],
 ) -> Result<String> {
-    let about = about(model, options.inverse);
-    let written = write((name, token), (&about, step(model)), options.fmi, variables);
+    let about = about(model, block);
+    let step = match block {
+        Block::Controller(scheme) => scheme.interval_s,
+        Block::Forward | Block::Inverse => step(model),
+    };
+    // A loop remembers more than the bytes of a saved state have.
+    let is_serial = !matches!(block, Block::Controller(_));
+    let written = write((name, token), (&about, step), (fmi, is_serial), variables);
     let text = written.map(String::from_utf8);
     match text {
         Ok(Ok(text)) => Ok(text + "\n"),
@@ -26,16 +33,27 @@ pub(super) fn xml(
     }
 }
 
-fn about(model: &Model, inverse: bool) -> String {
+fn about(model: &Model, block: Block<'_>) -> String {
     let (operator, levels) = (model.operator(), model.plane().levels());
     let operator = format!("{operator:?}").to_uppercase();
-    let block = match inverse {
-        false => format!("{operator} hysteresis model with {levels} levels"),
-        true => format!("Exact inverse of a hysteresis model ({operator}, {levels} levels)"),
+    let name = match block {
+        Block::Forward => format!("{operator} hysteresis model with {levels} levels"),
+        Block::Inverse => {
+            format!("Exact inverse of a hysteresis model ({operator}, {levels} levels)")
+        }
+        Block::Controller(_) => {
+            format!("Controller with a hysteresis model ({operator}, {levels} levels)")
+        }
     };
-    match crate::delay_note(model, None) {
-        None => block,
-        Some(note) => format!("{block}; {note}"),
+    // A clock is rounded; a nanosecond is no part of a time that one gives.
+    let seconds = (model.delay().seconds() * 1e9).round() / 1e9;
+    match (model.delay().is_none(), block) {
+        (true, _) => name,
+        (false, Block::Forward) => format!("{name}; its input acts {seconds} s later"),
+        (false, Block::Controller(_)) => format!("{name}; its drive acts {seconds} s later"),
+        (false, Block::Inverse) => format!(
+            "{name}; its input acts {seconds} s later, so the wanted output is the one of then"
+        ),
     }
 }
 
@@ -53,7 +71,7 @@ fn step(model: &Model) -> f64 {
 fn write(
     (name, token): (&str, &str),
     (about, step): (&str, f64),
-    fmi: Fmi,
+    (fmi, is_serial): (Fmi, bool),
     variables: &[Variable],
 ) -> io::Result<Vec<u8>> {
     let mut xml = Xml::new_with_indent(Vec::new(), b' ', 2);
@@ -74,7 +92,7 @@ fn write(
         ("variableNamingConvention", "flat"),
     ]);
     root.write_inner_content(|xml| {
-        co_simulation(xml, name, fmi)?;
+        co_simulation(xml, name, fmi, is_serial)?;
         unit_definitions(xml, variables)?;
         xml.create_element("LogCategories")
             .write_inner_content(|xml| {
@@ -106,7 +124,7 @@ fn write(
     Ok(xml.into_inner())
 }
 
-fn co_simulation(xml: &mut Xml, name: &str, fmi: Fmi) -> io::Result<()> {
+fn co_simulation(xml: &mut Xml, name: &str, fmi: Fmi, is_serial: bool) -> io::Result<()> {
     let element = xml.create_element("CoSimulation");
     let element = element.with_attributes([
         ("modelIdentifier", name),
@@ -120,8 +138,11 @@ fn co_simulation(xml: &mut Xml, name: &str, fmi: Fmi) -> io::Result<()> {
         ][..],
         Fmi::V3 => &["canGetAndSetFMUState", "canSerializeFMUState"],
     };
+    let offered = offered
+        .iter()
+        .filter(|name| is_serial || !name.contains("Serialize"));
     element
-        .with_attributes(offered.iter().map(|name| (*name, "true")))
+        .with_attributes(offered.map(|name| (*name, "true")))
         .write_empty()?;
     Ok(())
 }

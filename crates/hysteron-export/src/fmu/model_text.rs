@@ -1,14 +1,19 @@
 //! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines
 //! are.
 
-use super::staged;
+use super::options::Block;
+use super::{control, staged};
 use hysteron::{Model, Operator, Result, Sign};
 use std::fmt::Write;
 
-pub(super) fn write(model: &Model, inverse: bool, token: &str) -> Result<String> {
+pub(super) fn write(model: &Model, block: Block<'_>, token: &str) -> Result<String> {
     let plane = model.plane();
     let (min, max, levels) = (plane.min(), plane.max(), plane.levels());
-    let block = if inverse { "inverse" } else { "forward" };
+    let (name, control) = match block {
+        Block::Forward => ("forward", String::new()),
+        Block::Inverse => ("inverse", String::new()),
+        Block::Controller(scheme) => ("controller", control::line(model, scheme)),
+    };
     let operator = match model.operator() {
         Operator::Mkp => "mkp",
         Operator::Kp => "kp",
@@ -26,21 +31,21 @@ pub(super) fn write(model: &Model, inverse: bool, token: &str) -> Result<String>
         true => (1, String::new()),
         false => {
             let (input, load) = staged::first(model);
-            let signal = match inverse {
-                true => staged::first_target(model)?,
-                false => input,
+            let signal = match block.is_forward() {
+                false => staged::first_target(model)?,
+                true => input,
             };
-            let version = match (staged::has_others(model), parts.is_some()) {
-                (false, false) => 2,
-                (false, true) => 3,
-                (true, false) => 4,
-                (true, true) => 5,
+            let version = match (model.delay().is_none(), staged::is_whole(model)) {
+                (true, false) => 2,
+                (true, true) => 4,
+                (false, _) => 6,
             };
-            (version, staged::lines(model, (signal, load)))
+            let lines = staged::delay(model) + &staged::lines(model, (signal, load));
+            (version + usize::from(parts.is_some()), lines)
         }
     };
     let mut text = format!(
-        "hysteron-fmu {version}\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} \
+        "hysteron-fmu {version}\nblock {name}\n{control}token {token}\noperator {operator}\nplane {min:?} {max:?} \
          {levels}\n\
          output {offset:?} {sign}\n{more}weights {}\n",
         weights.len()

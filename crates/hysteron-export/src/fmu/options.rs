@@ -1,5 +1,21 @@
 //! What an FMU is to be.
 
+use hysteron::control::Scheme;
+
+/// The block that is made.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Block<'a> {
+    Forward,
+    Inverse,
+    Controller(&'a Scheme),
+}
+
+impl Block<'_> {
+    pub(super) fn is_forward(self) -> bool {
+        matches!(self, Self::Forward)
+    }
+}
+
 /// What an FMU is to be.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FmuOptions {
@@ -7,8 +23,8 @@ pub struct FmuOptions {
     pub inverse: bool,
     /// The standard that it follows.
     pub fmi: Fmi,
-    /// The block's name, a C identifier of up to 63 letters; `sf_MKP` or `sf_Inverse_MKP` without
-    /// one.
+    /// The block's name, a C identifier of up to 63 letters; `sf_MKP`, `sf_Inverse_MKP` or
+    /// `sf_Controller_MKP` without one.
     pub name: Option<String>,
 }
 

@@ -25,9 +25,10 @@ pub(super) fn is_loaded(model: &Model) -> bool {
     !model.stages().axis.load.loads.is_empty() || parts(model).is_some()
 }
 
-/// Whether the model has nothing but operators, all of them off at the start.
+/// Whether the model has nothing but operators, all of them off at the start, and no dead time.
 pub(super) fn is_plain(model: &Model) -> bool {
-    model.constants().is_none() && !is_loaded(model) && model.fitted().is_none()
+    let bare = model.constants().is_none() && !is_loaded(model);
+    bare && model.fitted().is_none() && model.delay().is_none()
 }
 
 /// The start values of input and load: the drive or input at the lower end, and the middle load.
@@ -62,12 +63,26 @@ pub(super) fn first_target(model: &Model) -> Result<f64> {
 }
 
 /// Whether the model has constants of stages that version 2 and 3 have no lines for.
-pub(super) fn has_others(model: &Model) -> bool {
+fn has_others(model: &Model) -> bool {
     let constants = model.constants();
     let mut others = constants
         .iter()
         .filter(|(constant, _)| constant.line_of_version_2().is_none());
     others.any(|(_, numbers)| !numbers.is_empty())
+}
+
+/// Whether there is a line for each constant of every stage.
+pub(super) fn is_whole(model: &Model) -> bool {
+    has_others(model) || !model.delay().is_none()
+}
+
+/// The line of the dead time, if there is one.
+pub(super) fn delay(model: &Model) -> String {
+    let delay = model.delay();
+    match delay.is_none() {
+        true => String::new(),
+        false => format!("delay {} {:?}\n", delay.samples(), delay.seconds()),
+    }
 }
 
 /// The lines of `model.txt` for stages and start.
@@ -98,7 +113,7 @@ pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
         ("body", body),
         ("drive", drive),
     ];
-    let whole = has_others(model);
+    let whole = is_whole(model);
     entries.extend(others.into_iter().filter_map(|(constant, numbers)| {
         let line = constant.line_of_version_2();
         let numbers = match (constant.name, numbers) {

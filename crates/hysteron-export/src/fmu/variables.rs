@@ -1,6 +1,9 @@
 //! The variables of the blocks.
 
+use super::control::parameters;
+use super::options::Block;
 use super::staged::{first, first_target, is_loaded};
+use hysteron::control::Scheme;
 use hysteron::{Model, Quantity, Result};
 
 /// A variable as FMI describes it.
@@ -32,7 +35,7 @@ const SIGN: (Option<&str>, Option<&str>) = (Some("-1"), Some("1"));
 const STATUS: (Option<&str>, Option<&str>) = (Some("-1"), Some("3"));
 
 /// All of a block, in the order of the description.
-pub(super) fn all(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
+pub(super) fn all(model: &Model, block: Block<'_>) -> Result<Vec<Variable>> {
     let (low, high) = model.active_range();
     let active = match model.thermal {
         None => format!("active from {low} to {high}"),
@@ -52,8 +55,8 @@ pub(super) fn all(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
     if wanted.name == "output" {
         wanted.name = "target".into();
     }
-    let mut variables = match inverse {
-        false => vec![
+    let mut variables = match block {
+        Block::Forward => vec![
             time(),
             // No minimum and maximum: tools stop at them, and the model does not.
             input(
@@ -71,7 +74,7 @@ pub(super) fn all(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
             ),
             start_on(),
         ],
-        true => vec![
+        Block::Inverse => vec![
             time(),
             input(
                 1,
@@ -92,9 +95,10 @@ pub(super) fn all(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
                  where a relay jumps past it; 3 where it cannot be reached in this step",
             ),
             heading(),
-            tolerance(&model.output),
+            tolerance(&model.output, 0.0),
             start_on(),
         ],
+        Block::Controller(scheme) => controller(model, scheme, &wanted)?,
     };
     variables[0].description = match model.is_timed() {
         true => "simulation time; a communication step is a step of the model",
@@ -118,6 +122,78 @@ pub(super) fn all(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
         start.for_each(|start| start.description = START_FITTED.into());
     }
     Ok(with_names(variables))
+}
+
+/// The flags of a controller, added.
+const FLAGS: (Option<&str>, Option<&str>) = (Some("0"), Some("31"));
+
+/// Those of a controller.
+fn controller(model: &Model, scheme: &Scheme, wanted: &Quantity) -> Result<Vec<Variable>> {
+    let first = first_target(model)?;
+    let named = |name: &str| Quantity {
+        name: name.into(),
+        ..model.output.clone()
+    };
+    let ahead = "by how much the wanted output will have changed when the drive is seen to act; 0 \
+                 if unknown";
+    let mut variables = vec![
+        time(),
+        input(1, wanted, first, "the output that is wanted now".into()),
+        input(
+            9,
+            &named("measured"),
+            first,
+            "the output as its sensor read it; NaN where it gave nothing".into(),
+        ),
+        Variable {
+            relative: true,
+            ..input(10, &named("ahead"), 0.0, ahead.into())
+        },
+        output(2, &model.input, "the drive to write".into()),
+        flag(
+            3,
+            "status",
+            FLAGS,
+            "flags, added: 1 the drive is at a limit; 2 out of reach; 4 no reading; 8 the reading \
+             stands still; 16 given up, the drive is the safe one",
+        ),
+        heading(),
+        tolerance(&model.output, scheme.tolerance),
+        start_on(),
+        Variable {
+            causality: "input",
+            variability: "discrete",
+            initial: None,
+            reference: 11,
+            name: "manual".into(),
+            description: "give `manual_drive`; the loop then goes on from there without a bump"
+                .into(),
+            ..start_on()
+        },
+        input(
+            12,
+            &Quantity {
+                name: "manual_drive".into(),
+                ..model.input.clone()
+            },
+            0.0,
+            "the drive of manual operation".into(),
+        ),
+    ];
+    let settings = parameters(scheme).into_iter().zip(13..);
+    variables.extend(
+        settings.map(|((name, start, description), reference)| Variable {
+            name: name.into(),
+            reference,
+            causality: "parameter",
+            variability: "tunable",
+            initial: Some("exact"),
+            start: Some(format!("{start:?}")),
+            description: description.into(),
+            ..time()
+        }),
+    );
+    Ok(variables)
 }
 
 const START_FITTED: &str = "start with all operators on, as after an input at the top, instead of \
@@ -198,14 +274,14 @@ fn heading() -> Variable {
     }
 }
 
-fn tolerance(output: &Quantity) -> Variable {
+fn tolerance(output: &Quantity, start: f64) -> Variable {
     Variable {
         name: "tolerance".into(),
         reference: 5,
         causality: "parameter",
         variability: "tunable",
         initial: Some("exact"),
-        start: Some("0.0".into()),
+        start: Some(format!("{start:?}")),
         unit: unit(output),
         relative: true,
         range: (Some("0.0"), None),
@@ -256,7 +332,8 @@ fn with_names(mut variables: Vec<Variable>) -> Vec<Variable> {
             // If two signals have one name, the later is renamed; a clash with our own names
             // renames the signal.
             others.clone().any(|(m, other)| {
-                m != n && other.name == name && (m < n || (3..=6).contains(&other.reference))
+                let ours = [3, 4, 5, 6].contains(&other.reference) || other.reference >= 9;
+                m != n && other.name == name && (m < n || ours)
             })
         };
         let mut name = if name.is_empty() {
@@ -286,7 +363,7 @@ mod tests {
             Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive).unwrap();
         model.input.name = input.into();
         model.output.name = output.into();
-        all(&model, false)
+        all(&model, Block::Forward)
             .unwrap()
             .into_iter()
             .map(|v| v.name)

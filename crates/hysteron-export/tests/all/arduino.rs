@@ -1,9 +1,9 @@
 //! A library for Arduino: what is written, and what is refused before anything is.
 
-use hysteron::control::{Gains, Scheme};
+use hysteron::control::{Gains, Safety, Scheme};
 use hysteron::{Destination, FirstOrder, Model, Operator, Plane, Sign};
 use hysteron_core::operator_count;
-use hysteron_export::{ArduinoOptions, Board, BoardMemory, CControl, CSampling, arduino};
+use hysteron_export::{ArduinoOptions, Board, BoardMemory, CSampling, arduino};
 use std::path::Path;
 
 fn model(levels: usize, body: bool) -> Model {
@@ -20,13 +20,13 @@ fn write(model: &Model, folder: &Path, board: Board) -> hysteron::Result<BoardMe
         integral_s: 0.5,
         derivative_s: 0.0,
     };
-    let control = CControl {
-        scheme: Scheme {
-            pid: Some(gains),
-            ..Scheme::new(0.05, (0.0, 1.0))
+    let scheme = Scheme {
+        pid: Some(gains),
+        safety: Safety {
+            lost_s: Some(0.5),
+            stuck_s: Some(1.0),
         },
-        lost_s: 0.5,
-        stuck_s: 1.0,
+        ..Scheme::new(0.05, (0.0, 1.0))
     };
     let options = ArduinoOptions {
         name: None,
@@ -38,7 +38,7 @@ fn write(model: &Model, folder: &Path, board: Board) -> hysteron::Result<BoardMe
         drive: None,
     };
     let target = Destination::keeping_foreign(folder, false);
-    Ok(arduino(model, target, &options, &sampling, &control)?.memory)
+    Ok(arduino(model, target, &options, &sampling, &scheme)?.memory)
 }
 
 #[test]

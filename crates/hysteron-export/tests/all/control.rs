@@ -4,9 +4,9 @@ use crate::common::programs::{has, links, skip};
 use crate::common::reference::Number;
 use crate::common::staged::{Case, case};
 use crate::common::{Exported, answers, same, walks};
-use hysteron::control::{Compensator, Controller, Gains, Reading, Reference, Scheme};
+use hysteron::control::{Compensator, Controller, Gains, Reading, Reference, Safety, Scheme};
 use hysteron::{Direction, Model, Policy, Sample};
-use hysteron_export::{CControl, COptions, CReal, CSampling, c_controlled};
+use hysteron_export::{COptions, CReal, CSampling, c_controlled};
 use rand::RngExt;
 use rand::rngs::StdRng;
 use std::fmt::Write;
@@ -17,7 +17,7 @@ use std::process::Command;
 struct Loop {
     model: Model,
     sampling: CSampling,
-    control: CControl,
+    scheme: Scheme,
 }
 
 /// Loops around models with random stages, without loads.
@@ -75,17 +75,17 @@ fn around(rng: &mut StdRng, case: Case) -> Loop {
         pid: coin(rng).then_some(gains),
         slew: some(rng, slew),
         stuck_s: some(rng, 4.0 * dt),
+        safety: Safety {
+            lost_s: rng.random_bool(0.3).then_some(6.0 * dt),
+            stuck_s: rng.random_bool(0.3).then_some(5.0 * dt),
+        },
         delay: rng.random_bool(0.7).then(|| rng.random_range(0..6)),
         ..Scheme::new(dt, case.drives)
     };
     Loop {
         model: case.model,
         sampling: case.sampling,
-        control: CControl {
-            scheme,
-            lost_s: 0.0,
-            stuck_s: 0.0,
-        },
+        scheme,
     }
 }
 
@@ -103,9 +103,9 @@ fn export(loops: &[Loop], real: CReal) -> Exported {
         let Loop {
             model,
             sampling,
-            control,
+            scheme,
         } = each;
-        let made = c_controlled(model, folder.path(), &options, sampling, control).unwrap();
+        let made = c_controlled(model, folder.path(), &options, sampling, scheme).unwrap();
         let bare = made.stages.is_empty();
         sources.extend(
             made.files
@@ -162,7 +162,7 @@ fn events(rng: &mut StdRng, each: &Loop, count: usize) -> Vec<Event> {
         a.min(b) - 0.1 * (b - a).abs(),
         a.max(b) + 0.1 * (b - a).abs() + 1e-9,
     );
-    let (bottom, top) = each.control.scheme.drives;
+    let (bottom, top) = each.scheme.drives;
     let mut events = Vec::new();
     let mut reference = rng.random_range(low..high);
     while events.len() < count {
@@ -216,17 +216,17 @@ fn hex(x: f64) -> String {
 
 /// Commands, and what the library's controller answers.
 fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
-    let Loop { model, control, .. } = each;
+    let Loop { model, scheme, .. } = each;
     let compensator = Some(Compensator::fixed(model).unwrap());
     let policy = Policy::Anticipate; // a heading of none is *hold*
     let scheme = Scheme {
         compensator,
         policy,
-        ..control.scheme.clone()
+        ..scheme.clone()
     };
     let mut controller = Controller::new(scheme).unwrap();
     // The plant is another one than the model: it drifts and has another gain.
-    let (mut state, dt) = (model.start(), Some(control.scheme.interval_s));
+    let (mut state, dt) = (model.start(), Some(each.scheme.interval_s));
     let (mut output, mut shown) = (model.output_range().0, 0.0);
     let mut drive = None;
     let (mut commands, mut expected) = (format!("m {n} 1\n"), String::from("m 0\n"));
@@ -289,8 +289,9 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
                     action.status.out_of_reach,
                     action.status.sensor_fault,
                     action.status.stuck,
+                    action.status.safe,
                 ];
-                let status: u32 = (0..4).map(|n| u32::from(flags[n]) << n).sum();
+                let status: u32 = (0..5).map(|n| u32::from(flags[n]) << n).sum();
                 let (drive, prediction) = (hex(action.drive), hex(action.prediction));
                 writeln!(expected, "s 0 {drive} {prediction} {status}").unwrap();
             }
@@ -311,7 +312,7 @@ fn compare(program: &mut Command, loops: &[Loop], seed: u64, count: usize, what:
     let [commands, expected] = all;
     same(&commands, &expected, &answers(program, &commands), what);
     // Every flag is among the answers.
-    for flag in [1, 2, 4, 8] {
+    for flag in [1, 2, 4, 8, 16] {
         let has = |line: &str| {
             let status = line
                 .strip_prefix("s 0 ")

@@ -8,6 +8,7 @@ mod adapt;
 mod arduino;
 mod c;
 mod control;
+mod delay;
 mod files;
 mod fmu;
 mod page;

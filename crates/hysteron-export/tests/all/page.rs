@@ -4,7 +4,7 @@ use crate::common::programs::{has, page, run};
 use crate::common::{STRICT, here};
 use hysteron::control::Scheme;
 use hysteron::{FirstOrder, Model, Operator, Plane, Sign};
-use hysteron_export::{CControl, COptions, CReal, CSampling, c, c_controlled, c_sampled};
+use hysteron_export::{COptions, CReal, CSampling, c, c_controlled, c_sampled};
 use std::process::Command;
 
 #[test]
@@ -125,12 +125,8 @@ fn the_loop_on_the_page() {
         dt: Some(0.01),
         drive: None,
     };
-    let control = CControl {
-        scheme: Scheme::new(0.01, (0.0, 1.0)),
-        lost_s: 0.5,
-        stuck_s: 1.0,
-    };
-    let made = c_controlled(&model, folder.path(), &options, &sampling, &control).unwrap();
+    let scheme = Scheme::new(0.01, (0.0, 1.0));
+    let made = c_controlled(&model, folder.path(), &options, &sampling, &scheme).unwrap();
     let program = format!(
         "#include \"wire.h\"\nstatic hys_real written;\n\
          static void write_drive(hys_real drive) {{ written = drive; }}\n\

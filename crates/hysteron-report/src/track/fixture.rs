@@ -152,6 +152,7 @@ fn trace(controller: &Controller, samples: usize, plane: &Plane) -> Trace {
         adapted: controller.adapts,
         rejected: controller.adapts && (500.0..504.0).contains(&t),
         stuck: false,
+        safe: false,
     };
     Trace {
         reference: each(&reference),

@@ -188,7 +188,10 @@ fn a_fit_is_cancelled_and_the_page_goes_on(way: Way) {
     // Two fits: one runs, the other waits. With so many replicates neither ends before it is
     // cancelled, however slow the browser is.
     browser.value(&tab, "document.querySelector('[name=levels]').value = '50'");
-    browser.value(&tab, "document.querySelector('[name=bootstrap]').value = '10000'");
+    browser.value(
+        &tab,
+        "document.querySelector('[name=bootstrap]').value = '10000'",
+    );
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.wait(

@@ -2,12 +2,11 @@
 //! inner loop around the input.
 
 use super::gate::Gate;
-use super::pid::clamp;
 use super::sensor::{Sensed, Sensor};
-use super::standstill::{Cause, Standstill};
-use super::{Gains, LoopStatus, Pid, Reading, Scheme};
+use super::{Gains, LoopStatus, Reading, Scheme};
 use crate::error::{Error, Result};
 use crate::model::{Policy, UnderWay};
+use hysteron_core::control::{Cause, Pid, Silence, Standstill, clamp};
 use hysteron_core::{Direction, Outcome};
 
 /// Samples within which a difference of the feedforward fades.
@@ -86,6 +85,7 @@ pub struct Controller {
     dt: f64,
     gate: Option<Gate>,
     standstill: Standstill,
+    silence: Silence,
     /// The drive to go on from at the next sample.
     from: Option<f64>,
     /// What is added to the feedforward for a few samples, so that it does not jump, and for how
@@ -127,6 +127,7 @@ impl Controller {
             dt: scheme.interval_s,
             gate: scheme.gate.map(Gate::new),
             standstill: Standstill::default(),
+            silence: Silence::default(),
             from: None,
             fade: (0.0, 0),
             feedforward: None,
@@ -211,26 +212,37 @@ impl Controller {
         next.iter()
             .try_for_each(|&output| refuse_not_finite(output))?;
         let (output, input, mut status) = self.read(reading);
-        if let Some(compensator) = &mut self.scheme.compensator {
-            if let Some(input) = self.acting {
-                if std::mem::take(&mut self.lost) {
-                    compensator.set_out_again();
-                }
-                let (prediction, outcome) =
-                    compensator.follow(input, Some(self.dt), output.value())?;
-                self.prediction = prediction;
-                status.adapted = outcome == Some(Outcome::Learned);
-                status.rejected |= outcome == Some(Outcome::Rejected);
-                status.stuck |= outcome.is_some_and(Outcome::is_stuck);
-            }
-            self.lost |= input == Some(Sensed::Broken);
-        }
+        self.follow((output, input), &mut status)?;
         let command = self.command(target, next, output.value(), &mut status)?;
+        status.safe = self.silence.given_up();
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
-    /// Runs one sample with a given `command` for the input, without regard to the output. For
-    /// recordings and step tests.
+    /// Lets the model follow the input that acts, and learn from the output.
+    fn follow(
+        &mut self,
+        (output, input): (Sensed, Option<Sensed>),
+        status: &mut LoopStatus,
+    ) -> Result<()> {
+        let Some(compensator) = &mut self.scheme.compensator else {
+            return Ok(());
+        };
+        if let Some(input) = self.acting {
+            if std::mem::take(&mut self.lost) {
+                compensator.set_out_again();
+            }
+            let (prediction, outcome) = compensator.follow(input, Some(self.dt), output.value())?;
+            self.prediction = prediction;
+            status.adapted = outcome == Some(Outcome::Learned);
+            status.rejected |= outcome == Some(Outcome::Rejected);
+            status.stuck |= outcome.is_some_and(Outcome::is_stuck);
+        }
+        self.lost |= input == Some(Sensed::Broken);
+        Ok(())
+    }
+
+    /// Runs one sample with a given `command` for the input, without regard to the output: manual
+    /// operation, recordings, step tests. The model follows, and its inverse begins anew from there.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
@@ -251,8 +263,12 @@ impl Controller {
     ) -> Result<Action> {
         refuse_not_finite(command)?;
         self.pass(dt)?;
-        let (output, input, status) = self.read(reading);
-        Ok(self.act(command, f64::NAN, (output, input), status))
+        let (output, input, mut status) = self.read(reading);
+        self.follow((output, input), &mut status)?;
+        if let Some(compensator) = &mut self.scheme.compensator {
+            compensator.set_out_again();
+        }
+        Ok(self.act(command, self.prediction, (output, input), status))
     }
 
     /// Tells that `drive` has acted up to the next reading, where that is not the drive of the last
@@ -272,7 +288,8 @@ impl Controller {
 
     /// Goes on from `drive` at the next sample, without a bump: from manual to automatic. The
     /// integral begins so that the first drive is this one. What it cannot take, such as the
-    /// feedforward of an inverse alone, fades within ten samples.
+    /// feedforward of an inverse alone, fades within ten samples. A loop that was given up
+    /// ([`Scheme::safety`]) goes on.
     ///
     /// ```
     /// use hysteron::control::{Controller, Gains, Reading, Reference, Scheme};
@@ -292,6 +309,10 @@ impl Controller {
     pub fn go_on_from(&mut self, drive: f64) -> Result<()> {
         self.applied(drive)?;
         (self.from, self.drive) = (Some(drive), Some(drive));
+        if self.silence.given_up() {
+            self.silence = Silence::default();
+            self.standstill.forgive();
+        }
         Ok(())
     }
 
@@ -393,6 +414,8 @@ impl Controller {
                 output = f64::NAN;
             }
         }
+        let (safety, stuck_s) = (self.scheme.safety, self.stuck_s());
+        self.silence.push(safety, reading.output, stuck_s, dt);
         (self.output.read(output, dt), input, status)
     }
 
@@ -446,7 +469,10 @@ impl Controller {
         status: LoopStatus,
     ) -> Action {
         let asked = self.driven(command, input);
-        let drive = self.slewed(asked);
+        let drive = match status.safe {
+            true => self.rest_drive(),
+            false => self.slewed(asked),
+        };
         let (low, high) = self.scheme.drives;
         self.held = (
             drive <= low || drive > asked,

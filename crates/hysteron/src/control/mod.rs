@@ -4,10 +4,11 @@
 //! anything that implements [`Device`], real or simulated; [`run`] does so on a [`SimulatedPlant`]
 //! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
-//! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
-//! feedback and `tuning` its gains; `sensor` checks each sensor, `gate` holds back spikes,
-//! `standstill` notices a stuck one; `trust` chooses between a learner and the model it began from; `status` has the flags; `device`,
-//! `run` and `trace` connect the loop to a device and record it.
+//! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` has the
+//! gains of the feedback and `tuning` finds them; `sensor` checks each sensor, `gate` holds back
+//! spikes; `trust` chooses between a learner and the model it began from; `status` has the flags;
+//! `device`, `run` and `trace` connect the loop to a device and record it. The feedback itself, and
+//! what notices that a reading stands still or is missing, are in [`hysteron_core::control`].
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
@@ -56,7 +57,6 @@ mod pid;
 mod run;
 mod scheme;
 mod sensor;
-mod standstill;
 mod status;
 mod trace;
 mod trust;
@@ -65,7 +65,8 @@ mod tuning;
 pub use compensator::Compensator;
 pub use controller::{Action, Controller, Reference};
 pub use device::{Device, Disturbance, Reading, SimulatedPlant};
-pub use pid::{Gains, Pid};
+pub use hysteron_core::control::{Pid, Safety};
+pub use pid::Gains;
 pub use run::{Course, run};
 pub use scheme::{InnerLoop, Scheme};
 pub use status::LoopStatus;

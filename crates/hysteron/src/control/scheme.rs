@@ -1,6 +1,6 @@
 //! The configuration of a controller.
 
-use super::{Compensator, Gains};
+use super::{Compensator, Gains, Safety};
 use crate::error::{Error, Result};
 use crate::model::{Delay, Policy};
 
@@ -59,6 +59,8 @@ pub struct Scheme {
     /// wanted now. `None`: one sample, and the dead time of the model ([`crate::Delay`]). With an
     /// inner loop the dead time alone: the input then comes to its command in its own time.
     pub delay: Option<usize>,
+    /// When the loop is given up.
+    pub safety: Safety,
 }
 
 impl Scheme {
@@ -82,6 +84,7 @@ impl Scheme {
             gate: None,
             slew: None,
             delay: None,
+            safety: Safety::default(),
         }
     }
 
@@ -129,6 +132,11 @@ impl Scheme {
         )?;
         let few = self.delay.is_none_or(|delay| delay <= Delay::MOST + 1);
         require(few, "`delay` must be at most 1001 samples")?;
+        let Safety { lost_s, stuck_s } = self.safety;
+        require(
+            [lost_s, stuck_s].into_iter().flatten().all(positive),
+            "the times of `safety` must be above zero",
+        )?;
         require(self.bias.is_finite(), "`bias` must be a finite number")?;
         require(
             range(self.commands),

@@ -17,4 +17,6 @@ pub struct LoopStatus {
     /// A channel stands still while the other one moves, so the model does not learn
     /// ([`hysteron_core::Watch`]).
     pub stuck: bool,
+    /// The loop is given up: the drive is the safe one ([`super::Scheme::safety`]).
+    pub safe: bool,
 }

@@ -16,17 +16,18 @@ const CHANCE: u32 = 3;
 
 /// What should move the output at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cause {
+pub struct Cause {
     /// The output that the model expects, and the range of its outputs.
-    pub(super) expected: Option<(f64, (f64, f64))>,
+    pub expected: Option<(f64, (f64, f64))>,
     /// The drive that acts, or the command of an inner loop, and its limits.
-    pub(super) drive: f64,
-    pub(super) drives: (f64, f64),
+    pub drive: f64,
+    /// The lowest and the highest.
+    pub drives: (f64, f64),
 }
 
 /// Compares what stands still with what should have moved it since.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Standstill {
+pub struct Standstill {
     /// The last reading, and the cause when it was new.
     since: Option<(f64, Cause)>,
     /// For how many samples and s the output should have moved.
@@ -40,7 +41,7 @@ pub(super) struct Standstill {
 impl Standstill {
     /// How long the output has stood still where it should have moved, s; `None` where it is not
     /// stuck. `dt` is the time since the last sample.
-    pub(super) fn push(&mut self, reading: f64, cause: Cause, dt: f64) -> Option<f64> {
+    pub fn push(&mut self, reading: f64, cause: Cause, dt: f64) -> Option<f64> {
         self.repeats = self.since.is_some_and(|(last, _)| last == reading);
         match self.since {
             Some((_, before)) if self.repeats => {
@@ -58,14 +59,21 @@ impl Standstill {
     }
 
     /// As [`Standstill::push`] found it last.
-    pub(super) fn stuck_s(&self) -> Option<f64> {
+    #[must_use]
+    pub fn stuck_s(&self) -> Option<f64> {
         let (count, time) = self.still;
         (count >= CHANCE).then_some(time)
     }
 
+    /// Begins anew to notice.
+    pub fn forgive(&mut self) {
+        self.still = (0, 0.0);
+    }
+
     /// Where the drive may go while the output stands still and no model says whether it should: so
     /// a stuck sensor does not drive to a limit.
-    pub(super) fn room(&self) -> Option<(f64, f64)> {
+    #[must_use]
+    pub fn room(&self) -> Option<(f64, f64)> {
         let (_, cause) = self.since.filter(|_| self.repeats)?;
         let (low, high) = cause.drives;
         let least = RANGE * (high - low);

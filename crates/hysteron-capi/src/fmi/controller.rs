@@ -1,0 +1,443 @@
+//! The third block: a model and its inverse in a control loop, with PID feedback. It gives the
+//! drives of `hysteron::control::Controller` with a fixed model, without filter, gate and inner
+//! loop.
+
+use super::block::{Block, Inputs, Outputs, State};
+use super::lines::{Lines, Parsed};
+use super::{Problem, Result};
+use crate::delay::{MOST, UnderWay};
+use hysteron_core::control::{Cause, Pid, Safety, Silence, Standstill, Terms, clamp};
+use hysteron_core::{Direction, Status};
+
+/// Samples within which a difference of the feedforward fades.
+const FADE: u32 = 10;
+/// While the target itself has not turned, the inverse crosses the dead band only if the difference
+/// exceeds this many tolerances.
+const NOT_TURNED: f64 = 8.0;
+
+/// Parameters of the loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Settings {
+    pub(crate) terms: Terms,
+    pub(crate) drives: (f64, f64),
+    /// Of the drive per second; 0 for no limit.
+    pub(crate) slew: f64,
+    /// Until the drive is the safe one, s; 0 for never.
+    pub(crate) lost_s: f64,
+    pub(crate) stuck_s: f64,
+}
+
+/// How many numbers they are.
+pub(crate) const SETTINGS: usize = 8;
+
+impl Settings {
+    /// In the order of the variables, and of the line in the model's text.
+    pub(crate) fn numbers(&mut self) -> [&mut f64; SETTINGS] {
+        let Terms {
+            gain,
+            integral_s,
+            derivative_s,
+        } = &mut self.terms;
+        let (low, high) = (&mut self.drives.0, &mut self.drives.1);
+        let times = (&mut self.lost_s, &mut self.stuck_s);
+        [
+            gain,
+            integral_s,
+            derivative_s,
+            low,
+            high,
+            &mut self.slew,
+            times.0,
+            times.1,
+        ]
+    }
+
+    pub(crate) fn of(numbers: [f64; SETTINGS]) -> Self {
+        let [
+            gain,
+            integral_s,
+            derivative_s,
+            low,
+            high,
+            slew,
+            lost_s,
+            stuck_s,
+        ] = numbers;
+        Self {
+            terms: Terms {
+                gain,
+                integral_s,
+                derivative_s,
+            },
+            drives: (low, high),
+            slew,
+            lost_s,
+            stuck_s,
+        }
+    }
+
+    /// What no loop can run with.
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        let from_zero = |value: f64| value >= 0.0 && value.is_finite();
+        let (low, high) = self.drives;
+        let times = [self.terms.integral_s, self.terms.derivative_s];
+        let others = [self.slew, self.lost_s, self.stuck_s];
+        match () {
+            () if !self.terms.gain.is_finite() => Some("the gain must be a finite number"),
+            () if !times.into_iter().chain(others).all(from_zero) => {
+                Some("times and slew must be finite and from zero on")
+            }
+            // Written so that NaN fails the comparison.
+            () if !(low < high && (high - low).is_finite()) => {
+                Some("the limits of the drive must be finite, the lower one first")
+            }
+            () => None,
+        }
+    }
+
+    fn safety(&self) -> Safety {
+        let some = |time: f64| (time > 0.0).then_some(time);
+        Safety {
+            lost_s: some(self.lost_s),
+            stuck_s: some(self.stuck_s),
+        }
+    }
+
+    fn rest(&self) -> f64 {
+        clamp(0.0, self.drives.0, self.drives.1)
+    }
+}
+
+/// What the text of a model has of its loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Control {
+    pub(crate) settings: Settings,
+    /// The usual tolerance.
+    pub(crate) tolerance: f64,
+    /// Of the model's output.
+    pub(crate) range: f64,
+}
+
+impl Control {
+    /// Of the other blocks.
+    pub(crate) const NONE: Self = Self {
+        settings: Settings {
+            terms: Terms {
+                gain: 0.0,
+                integral_s: 0.0,
+                derivative_s: 0.0,
+            },
+            drives: (0.0, 1.0),
+            slew: 0.0,
+            lost_s: 0.0,
+            stuck_s: 0.0,
+        },
+        tolerance: 0.0,
+        range: 0.0,
+    };
+
+    /// Reads its line.
+    pub(crate) fn read(lines: &mut Lines<'_>) -> Parsed<Self> {
+        let numbers = lines.numbers("control")?;
+        let Some(([tolerance, range], settings)) = numbers.split_first_chunk() else {
+            return lines.fault("`control` and 10 numbers are expected");
+        };
+        let Ok(settings) = <[f64; SETTINGS]>::try_from(settings) else {
+            return lines.fault("`control` and 10 numbers are expected");
+        };
+        let settings = Settings::of(settings);
+        match settings.fault() {
+            None if *tolerance >= 0.0 && *range >= 0.0 => Ok(Self {
+                settings,
+                tolerance: *tolerance,
+                range: *range,
+            }),
+            None => lines.fault("tolerance and range from zero on are expected"),
+            Some(fault) => lines.fault(fault),
+        }
+    }
+}
+
+/// What a loop remembers beside the state of the inverse.
+#[derive(Debug, Clone)]
+pub(crate) struct Loop {
+    /// The model at the drives that have acted.
+    followed: Box<State>,
+    /// Whether the inverse has a state already.
+    aimed: bool,
+    pid: Pid,
+    standstill: Standstill,
+    silence: Silence,
+    under_way: UnderWay<Vec<f64>>,
+    /// The drive to go on from at the next sample, the difference that fades, and for how long.
+    from: Option<f64>,
+    fade: (f64, u32),
+    drive: Option<f64>,
+    acting: Option<f64>,
+    prediction: f64,
+    held: (bool, bool),
+    turning: Turning,
+    manual: bool,
+}
+
+/// The branch that the reference is on, as `hysteron::Turning` finds it.
+#[derive(Debug, Clone, Copy)]
+struct Turning {
+    low: f64,
+    high: f64,
+    branch: Option<Direction>,
+}
+
+impl Turning {
+    fn push(&mut self, y: f64, tolerance: f64) {
+        (self.low, self.high) = (self.low.min(y), self.high.max(y));
+        let falls = self.high - y > tolerance && self.branch != Some(Direction::Falling);
+        let rises = y - self.low > tolerance && self.branch != Some(Direction::Rising);
+        self.branch = match (falls, rises) {
+            (true, _) => Some(Direction::Falling),
+            (_, true) => Some(Direction::Rising),
+            _ => return,
+        };
+        (self.low, self.high) = (y, y);
+    }
+}
+
+impl Loop {
+    pub(crate) fn new(block: &Block, followed: State) -> Self {
+        let settings = block.control.settings;
+        Self {
+            followed: Box::new(followed),
+            aimed: false,
+            pid: Pid::new(settings.terms),
+            standstill: Standstill::default(),
+            silence: Silence::default(),
+            under_way: UnderWay::new(block.dead, vec![0.0; MOST]),
+            from: None,
+            fade: (0.0, 0),
+            drive: None,
+            acting: None,
+            prediction: f64::NAN,
+            held: (false, false),
+            turning: Turning {
+                low: f64::INFINITY,
+                high: f64::NEG_INFINITY,
+                branch: None,
+            },
+            manual: false,
+        }
+    }
+
+    /// The outputs while no time passes.
+    pub(crate) fn at_rest(&self, inputs: &Inputs) -> Outputs {
+        Outputs {
+            signal: self.drive.unwrap_or(inputs.settings.rest()),
+            flag: 0,
+            temperature: self.followed.stages.temperature(),
+        }
+    }
+}
+
+/// The flags of a sample, as in exported C and in the C interface.
+const AT_LIMIT: i32 = 1;
+const OUT_OF_REACH: i32 = 2;
+const NO_READING: i32 = 4;
+const STUCK: i32 = 8;
+const SAFE: i32 = 16;
+
+impl Block {
+    /// One sample of the loop. `wanted` is the state of the inverse.
+    pub(crate) fn control(
+        &self,
+        wanted: &mut State,
+        own: &mut Loop,
+        inputs: &Inputs,
+        dt: f64,
+    ) -> Result<Outputs> {
+        let settings = &inputs.settings;
+        if let Some(fault) = settings.fault() {
+            return Err(Problem::new(fault));
+        }
+        for (what, number) in [
+            ("ahead", inputs.ahead),
+            ("manual_drive", inputs.manual_drive),
+        ] {
+            if !number.is_finite() {
+                return Err(Problem(format!(
+                    "`{what}` is {number}, not a finite number"
+                )));
+            }
+        }
+        if own.manual && !inputs.manual {
+            own.go_on();
+        }
+        own.manual = inputs.manual;
+        let mut flag = 0;
+        let measured = own.read(self, settings, inputs.measured, dt, &mut flag);
+        if let Some(signal) = own.acting {
+            let acting = Inputs { signal, ..*inputs };
+            own.prediction = self.forward(&mut own.followed, &acting, dt)?.output;
+        }
+        let asked = match inputs.manual {
+            true => {
+                own.aimed = false;
+                inputs.manual_drive
+            }
+            false => {
+                if own.silence.given_up() {
+                    flag |= SAFE;
+                }
+                let (feedforward, status) = self.aim(wanted, own, inputs, dt)?;
+                if status.is_out_of_reach() {
+                    flag |= OUT_OF_REACH;
+                }
+                own.answer(settings, feedforward, inputs.signal, measured, dt)
+            }
+        };
+        let (low, high) = settings.drives;
+        let within = clamp(asked, low, high);
+        let drive = match (flag & SAFE > 0, own.drive) {
+            (true, _) => settings.rest(),
+            (false, Some(last)) if settings.slew > 0.0 => {
+                let way = settings.slew * dt;
+                clamp(within, last - way, last + way)
+            }
+            _ => within,
+        };
+        own.held = (
+            drive <= low || drive > within,
+            drive >= high || drive < within,
+        );
+        if own.held.0 || own.held.1 || asked <= low || asked >= high {
+            flag |= AT_LIMIT;
+        }
+        own.drive = Some(drive);
+        Ok(Outputs {
+            signal: drive,
+            flag,
+            temperature: own.followed.stages.temperature(),
+        })
+    }
+
+    /// The input for the reference that is due when it is seen to act.
+    fn aim(
+        &self,
+        wanted: &mut State,
+        own: &mut Loop,
+        inputs: &Inputs,
+        dt: f64,
+    ) -> Result<(f64, Status)> {
+        let signal = inputs.signal + inputs.ahead;
+        if !own.aimed {
+            *wanted = own.followed.as_ref().clone();
+            own.aimed = true;
+        }
+        own.turning.push(signal, inputs.tolerance);
+        let rises = wanted.operators.is_rising() == (self.sign > 0.0);
+        let turned = own
+            .turning
+            .branch
+            .is_some_and(|branch| rises != (branch == Direction::Rising));
+        let tolerance = match inputs.heading {
+            0 if !turned => NOT_TURNED * inputs.tolerance,
+            _ => inputs.tolerance,
+        };
+        let aim = Inputs {
+            signal,
+            tolerance,
+            ..*inputs
+        };
+        let solution = self.inverse(wanted, &aim, dt)?;
+        Ok((solution.input, solution.status))
+    }
+}
+
+impl Loop {
+    /// Goes on from the last drive without a bump.
+    fn go_on(&mut self) {
+        self.from = self.drive;
+        if self.silence.given_up() {
+            self.silence = Silence::default();
+            self.standstill.forgive();
+        }
+    }
+
+    /// The reading, where there is a valid one, and the drive that it answers.
+    fn read(
+        &mut self,
+        block: &Block,
+        settings: &Settings,
+        reading: f64,
+        dt: f64,
+        flag: &mut i32,
+    ) -> Option<f64> {
+        self.acting = self.drive.map(|drive| {
+            let acting = self.under_way.acting(drive, Some(dt));
+            self.under_way.push(drive, Some(dt));
+            acting
+        });
+        let expected = self.prediction;
+        let cause = Cause {
+            expected: (expected.is_finite() && self.drive.is_some())
+                .then_some((expected, (0.0, block.control.range))),
+            drive: self.drive.unwrap_or(settings.drives.0),
+            drives: settings.drives,
+        };
+        let stuck = reading.is_finite() && self.standstill.push(reading, cause, dt).is_some();
+        let stuck_s = self.standstill.stuck_s();
+        self.silence.push(settings.safety(), reading, stuck_s, dt);
+        if stuck {
+            *flag |= STUCK;
+        }
+        let measured = Some(reading).filter(|reading| reading.is_finite() && !stuck);
+        if measured.is_none() {
+            *flag |= NO_READING;
+        }
+        measured
+    }
+
+    /// The drive for a measured output, or without one.
+    fn answer(
+        &mut self,
+        settings: &Settings,
+        feedforward: f64,
+        reference: f64,
+        measured: Option<f64>,
+        dt: f64,
+    ) -> f64 {
+        let terms = settings.terms;
+        let (low, high) = settings.drives;
+        let feedback = terms.gain != 0.0;
+        self.pid.set(terms);
+        let error = measured.map(|measured| reference - measured);
+        if let Some(from) = self.from {
+            if feedback && measured.is_none() {
+                // The loop is not closed before its first reading.
+                return clamp(from, low, high);
+            }
+            self.from = None;
+            let e = error.unwrap_or(0.0);
+            let offset = match feedback && terms.integral_s <= 0.0 {
+                true => from - feedforward - terms.gain * e,
+                false => from - feedforward,
+            };
+            self.fade = (offset, FADE);
+            if feedback {
+                self.pid.begin(from, e, feedforward + offset);
+            }
+        }
+        let (offset, left) = &mut self.fade;
+        let bias = feedforward + *offset * f64::from(*left) / f64::from(FADE);
+        *left = left.saturating_sub(1);
+        let limits = match self.standstill.room() {
+            Some(room) => (low.max(room.0), high.min(room.1)),
+            None => (low, high),
+        };
+        match (feedback, measured, error) {
+            (true, Some(measured), Some(error)) => self
+                .pid
+                .follow(error, measured, dt, bias, limits, self.held),
+            (true, ..) => self.pid.hold(bias, limits),
+            (false, ..) => clamp(bias, limits.0, limits.1),
+        }
+    }
+}
