@@ -99,6 +99,8 @@ pub struct Controller {
     inner: Option<Pid>,
     output: Sensor,
     input: Sensor,
+    /// The wanted output, as late as the filter makes the measured one.
+    wanted: Sensor,
     /// Samples until a drive moves the output.
     due: usize,
     /// The inputs under way: given, and not yet answered by the output.
@@ -136,6 +138,7 @@ impl Controller {
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
             output: sensor(),
             input: sensor(),
+            wanted: Sensor::new(scheme.filter_s, None),
             due: scheme.due(),
             under_way: UnderWay::new(scheme.late()),
             acting: None,
@@ -309,6 +312,7 @@ impl Controller {
     pub fn go_on_from(&mut self, drive: f64) -> Result<()> {
         self.applied(drive)?;
         (self.from, self.drive) = (Some(drive), Some(drive));
+        self.wanted = Sensor::new(self.scheme.filter_s, None);
         if self.silence.given_up() {
             self.silence = Silence::default();
             self.standstill.forgive();
@@ -534,7 +538,14 @@ impl Controller {
             changed = compensator.take_changed();
         }
         self.smooth(changed, feedforward);
-        let error = measured.map(|measured| target.output - measured);
+        // An inverse brings the output to the target in time. The reading is late by the filter:
+        // compared with the target of now, the feedback would pull the drive away from where it is
+        // right. Without an inverse the lag is one of the loop, and a late target would add to it.
+        let wanted = match self.scheme.compensator {
+            Some(_) => self.wanted.filter(target.output, self.dt),
+            None => target.output,
+        };
+        let error = measured.map(|measured| wanted - measured);
         if let Some(from) = self.begins_at() {
             if self.pid.is_some() && measured.is_none() {
                 // The loop is not closed before its first reading.
