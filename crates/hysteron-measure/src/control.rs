@@ -5,49 +5,44 @@
 //! cargo run --release -p hysteron-measure -- control > docs/measured/control.md
 //! ```
 
+mod bound;
+mod scene;
+
 use crate::result::Result;
-use hysteron::Progress;
-use hysteron_sim::track::{Comparison, Kind, Median, Scenario, Tuning, track};
+use hysteron_sim::track::Scenario;
+use scene::Scene;
 
-/// With an adaptive one that is as good as the fixed one up to this factor, nothing is lost.
-const LOST: f64 = 1.1;
+/// Runs of each scenario.
+const SEEDS: u32 = 5;
+/// An error that is larger by no more than this share is as good.
+const AS_GOOD: f64 = 0.05;
 
-const ONE_OF_EACH: [Kind; 5] = [
-    Kind::Pid,
-    Kind::InverseAnticipate,
-    Kind::AdaptiveAnticipate,
-    Kind::InversePidAnticipate,
-    Kind::AdaptivePidAnticipate,
-];
-
+/// All built-in scenarios, or those named.
 pub(crate) fn run(names: &[String]) -> Result<()> {
-    for name in names {
-        let mut scenario = Scenario::load(name)?;
-        scenario.controllers = ONE_OF_EACH.to_vec();
-        let t = std::time::Instant::now();
-        let comparison = track(&scenario, Progress::NONE)?;
-        eprintln!("{name} {:?}", t.elapsed());
-        let medians = comparison.medians();
-        println!(
-            "{name} {:?} fit {:?}",
-            comparison.gains,
-            comparison.model.fit.as_ref().map(|f| f.nrmse_percent)
-        );
-        println!(
-            "{:?} {:?} {:?}",
-            comparison.model.thermal,
-            comparison.model.delay(),
-            comparison.model.output_range()
-        );
-        for (w, window) in comparison.windows.iter().enumerate() {
-            print!("{:30}", window.name);
-            for k in 0..comparison.controllers.len() {
-                let m: &Median = &medians[w * comparison.controllers.len() + k];
-                print!(" {:8.4} ({:.2})", m.score.rmse, m.score.saturated);
-            }
-            println!();
+    let mut scenes = Vec::new();
+    for name in Scenario::names() {
+        if names.is_empty() || names.iter().any(|asked| asked == name) {
+            eprintln!("{name} …");
+            scenes.push(Scene::run(name, SEEDS)?);
         }
     }
-    let _ = (LOST, Tuning::Relay, |_: Comparison| ());
+    print!("{}", include_str!("text/control.md"));
+    println!("\n## Where learning loses\n");
+    println!("Errors over those of the fixed inverse, where they are larger by more than 5 %:\n");
+    list(&scenes, |scene| scene.lost_to_fixed(1.0 + AS_GOOD));
+    println!("\nErrors of adaptive inverse and PID over those of the better PID alone:\n");
+    list(&scenes, |scene| scene.lost_to_pid(1.0 + AS_GOOD));
+    for scene in &scenes {
+        scene.print();
+    }
     Ok(())
+}
+
+fn list(scenes: &[Scene], of: impl Fn(&Scene) -> Vec<String>) {
+    for scene in scenes {
+        let lost = of(scene);
+        if !lost.is_empty() {
+            println!("- `{}`: {}.", scene.name, lost.join("; "));
+        }
+    }
 }
