@@ -189,7 +189,9 @@ fn load_and_age_do_what_they_do() {
             ..BoucWenPlantOptions::default()
         });
         hold(&mut plant, 60.0, 1.0, 1);
-        change.map(|change| plant.disturb(change).unwrap());
+        if let Some(change) = change {
+            plant.disturb(change).unwrap();
+        }
         hold(&mut plant, 60.0, 200.0, 1)
     };
     let first = rest(None);

@@ -212,7 +212,9 @@ fn a_current_heats_by_its_square() {
 fn room_load_and_age_do_what_they_do() {
     let hot = |change: Option<Disturbance>| {
         let mut plant = wire(perfect());
-        change.map(|change| plant.disturb(change).unwrap());
+        if let Some(change) = change {
+            plant.disturb(change).unwrap();
+        }
         let warm = hold(&mut plant, 0.36, 60.0, 1);
         (warm, hold(&mut plant, 0.8, 20.0, 1))
     };
