@@ -43,10 +43,12 @@ __all__ = [
     "Adaptive",
     "AdaptiveLoad",
     "BatchModel",
+    "BoucWenPlant",
     "Comparison",
     "Controller",
     "Design",
     "Inverse",
+    "LatentWirePlant",
     "Learning",
     "Model",
     "Pid",
@@ -290,6 +292,24 @@ class BatchModel:
     def __len__(self) -> int: ...
 
 @final
+class BoucWenPlant(SimulatedPlant):
+    def __new__(
+        cls,
+        *,
+        load_n: float = 0.0,
+        limit_v: float = 100.0,
+        alpha: float = 0.3,
+        beta: float = 0.02,
+        gamma: float = 0.01,
+        creep: float = 0.03,
+        resonance_hz: float = 400.0,
+        damping: float = 0.03,
+        delay_s: float = 0.0005,
+        sensor: _Sensor = ...,
+        seed: int = 1,
+    ) -> BoucWenPlant: ...
+
+@final
 class Comparison:
     @property
     def title(self) -> str: ...
@@ -419,6 +439,22 @@ class Inverse:
         tolerance: float = 0.0,
     ) -> tuple[float, int]: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class LatentWirePlant(SimulatedPlant):
+    def __new__(
+        cls,
+        *,
+        load_n: float = 3.0,
+        stiffness_n_per_mm: float = 0.1,
+        room_degc: float = 20.0,
+        latent_heat_j_per_g: float = 20.0,
+        strain: float = 0.04,
+        drive: Literal["duty", "current"] = "duty",
+        limit_a: float = 0.3,
+        sensor: _Sensor = ...,
+        seed: int = 1,
+    ) -> LatentWirePlant: ...
 
 @final
 class Learning:
@@ -726,6 +762,7 @@ class SimulatedPlant:
         load_n: float | None = None,
         room_degc: float | None = None,
         predeformation_mm: float | None = None,
+        gain: float | None = None,
         stuck: bool | None = None,
         lost: bool | None = None,
     ) -> None: ...

@@ -1593,6 +1593,8 @@ class Event(_At, total=False):
         Room temperature, °C.
     predeformation_mm : float
         Pre-deformation, mm.
+    gain : float
+        Ageing: the share of its first stroke that the actuator still has.
     stuck : bool
         Whether the output's sensor stands still.
     lost : bool
@@ -1602,6 +1604,7 @@ class Event(_At, total=False):
     load_n: float
     room_degc: float
     predeformation_mm: float
+    gain: float
     stuck: bool
     lost: bool
 

@@ -69,6 +69,8 @@ DEFAULTS = {
     pyhysteron.control.Controller: lambda **shown: commanded(**{**shown, "model": MODEL}),
     pyhysteron.SpringPlant: lambda **shown: driven(pyhysteron.SpringPlant(**shown)),
     pyhysteron.PreisachPlant: lambda **shown: driven(pyhysteron.PreisachPlant(**shown)),
+    pyhysteron.LatentWirePlant: lambda **shown: driven(pyhysteron.LatentWirePlant(**shown)),
+    pyhysteron.BoucWenPlant: lambda **shown: driven(pyhysteron.BoucWenPlant(**shown)),
     pyhysteron.SimulatedPlant.disturb: disturbed,
     Pid.step: lambda **shown: Pid(1.0, integral_s=1.0).step(1.0, 0.1, **shown),
 }
@@ -100,7 +102,7 @@ def test_of_the_options_of_an_estimator(call):
             call(*arguments, method=method, **{name: {"gate": 2, "window": "cycles:2"}.get(name, 1)})
 
 
-@pytest.mark.parametrize("plant", [pyhysteron.SpringPlant, pyhysteron.PreisachPlant])
+@pytest.mark.parametrize("plant", [pyhysteron.SpringPlant, pyhysteron.PreisachPlant, pyhysteron.LatentWirePlant, pyhysteron.BoucWenPlant])
 def test_of_the_options_of_a_plant(plant):
     names = [option.name for option in options(plant) if option.default is ...]
     assert names

@@ -5,100 +5,45 @@
 //! cargo run --release -p hysteron-measure -- control > docs/measured/control.md
 //! ```
 
+mod bound;
+mod scene;
+
 use crate::result::Result;
-use hysteron::Progress;
-use hysteron_sim::track::{Comparison, Scenario, Score, Tuning, track};
+use hysteron_sim::track::Scenario;
+use scene::Scene;
 
-const SCENARIOS: [&str; 6] = [
-    "load-step",
-    "load-step-preisach",
-    "sine",
-    "staircase",
-    "drift",
-    "faults",
-];
+/// Runs of each scenario.
+const SEEDS: u32 = 5;
+/// An error that is larger by no more than this share is as good.
+const AS_GOOD: f64 = 0.05;
 
-pub(crate) fn run(_: &[String]) -> Result<()> {
-    print!("{}", include_str!("text/control.md"));
-    for name in SCENARIOS {
-        let scenario = Scenario::load(name)?;
-        eprintln!("{name} …");
-        let comparison = track(&scenario, Progress::NONE)?;
-        println!("\n## `{name}`: {}\n", scenario.title);
-        table(&scenario, &comparison);
+/// All built-in scenarios, or those named.
+pub(crate) fn run(names: &[String]) -> Result<()> {
+    let mut scenes = Vec::new();
+    for name in Scenario::names() {
+        if names.is_empty() || names.iter().any(|asked| asked == name) {
+            eprintln!("{name} …");
+            scenes.push(Scene::run(name, SEEDS)?);
+        }
     }
-    print!("\n{}", include_str!("text/control-step.md"));
-    for name in &SCENARIOS[..2] {
-        let mut scenario = Scenario::load(name)?;
-        scenario.shared.tuning = Tuning::Step;
-        eprintln!("{name}, tuned by a step test …");
-        let comparison = track(&scenario, Progress::NONE)?;
-        println!("\n### `{name}`, PID tuned by a step test\n");
-        table(&scenario, &comparison);
+    print!("{}", include_str!("text/control.md"));
+    println!("\n## Where learning loses\n");
+    println!("Errors over those of the fixed inverse, where they are larger by more than 5 %:\n");
+    list(&scenes, |scene| scene.lost_to_fixed(1.0 + AS_GOOD));
+    println!("\nErrors of adaptive inverse and PID over those of the better PID alone:\n");
+    list(&scenes, |scene| scene.lost_to_pid(1.0 + AS_GOOD));
+    print!("{}", include_str!("text/control-why.md"));
+    for scene in &scenes {
+        scene.print();
     }
     Ok(())
 }
 
-fn table(scenario: &Scenario, comparison: &Comparison) {
-    let [_, _, output] = scenario.plant.quantities();
-    let unit = output.unit.unwrap_or_default();
-    if let Some(gains) = comparison.gains {
-        println!(
-            "PID: gain {:.3}, integral time {:.3} s. {} runs.\n",
-            gains.gain, gains.integral_s, scenario.seeds
-        );
-    }
-    println!(
-        "| | tracking RMSE, {unit} | largest | prediction RMSE | frozen | lag after reversals, s | \
-         drive travel, % |"
-    );
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
-    let medians = comparison.medians();
-    let number = |value: f64| match value.is_nan() {
-        true => "–".to_owned(),
-        false => format!("{value:.3}"),
-    };
-    let of_windows = medians.chunks(comparison.controllers.len());
-    for (window, medians) in comparison.windows.iter().zip(of_windows) {
-        println!(
-            "| **{}** ({} to {} s) | | | | | | |",
-            window.name, window.from_s, window.to_s
-        );
-        for median in medians {
-            let Score {
-                rmse,
-                max_abs,
-                prediction_rmse,
-                frozen_rmse,
-                lag_s,
-                drive_travel,
-                ..
-            } = median.score;
-            let cells = [
-                rmse,
-                max_abs,
-                prediction_rmse,
-                frozen_rmse,
-                lag_s,
-                100.0 * drive_travel,
-            ];
-            println!(
-                "| {} | {} |",
-                median.controller,
-                cells.map(number).join(" | ")
-            );
+fn list(scenes: &[Scene], of: impl Fn(&Scene) -> Vec<String>) {
+    for scene in scenes {
+        let lost = of(scene);
+        if !lost.is_empty() {
+            println!("- `{}`: {}.", scene.name, lost.join("; "));
         }
-    }
-    println!("\n| Ratio, median over the runs | tracking RMSE | prediction RMSE |");
-    println!("| --- | --- | --- |");
-    for ratio in comparison.ratios() {
-        println!(
-            "| {}: {} / {} | {} | {} |",
-            ratio.window,
-            ratio.controller,
-            ratio.compared_with,
-            number(ratio.rmse),
-            number(ratio.prediction_rmse)
-        );
     }
 }

@@ -84,7 +84,7 @@ mod _hysteron {
     #[pymodule_export]
     use crate::pid::Pid;
     #[pymodule_export]
-    use crate::plant::{PreisachPlant, SimulatedPlant, SpringPlant};
+    use crate::plant::{BoucWenPlant, LatentWirePlant, PreisachPlant, SimulatedPlant, SpringPlant};
     #[pymodule_export]
     use crate::prepare::prepare;
     #[pymodule_export]

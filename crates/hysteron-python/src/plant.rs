@@ -3,7 +3,9 @@
 use crate::convert::{arguments, options};
 use crate::error::{Raise, number};
 use crate::shared::Shared;
-use hysteron_sim::plant::{self, PreisachPlantOptions, SpringPlantOptions};
+use hysteron_sim::plant::{
+    self, BoucWenPlantOptions, LatentWirePlantOptions, PreisachPlantOptions, SpringPlantOptions,
+};
 use hysteron_sim::track::{Event, PlantOptions};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,7 +16,7 @@ const HEARD_S: f64 = 3600.0;
 
 type Boxed = Box<dyn hysteron::control::SimulatedPlant + Send>;
 
-/// A simulated device: `SpringPlant` or `PreisachPlant`.
+/// A simulated device: `SpringPlant`, `PreisachPlant`, `LatentWirePlant` or `BoucWenPlant`.
 ///
 /// Once a sample: `read`, `write`, `advance`. Several threads may share one. It cannot be pickled:
 /// one made with the same options and seed does the same.
@@ -148,6 +150,8 @@ impl SimulatedPlant {
     ///     Room temperature, °C.
     /// predeformation_mm : float, optional
     ///     Pre-deformation, mm.
+    /// gain : float, optional
+    ///     Ageing: the share of its first stroke that the actuator still has, from 0.5 to 1.
     /// stuck, lost : bool, optional
     ///     Whether the output's sensor stands still, or reads nothing.
     ///
@@ -162,7 +166,7 @@ impl SimulatedPlant {
     /// >>> plant.disturb(lost=True)
     /// >>> plant.read()[0]
     /// nan
-    #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, stuck=None, lost=None)")]
+    #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, gain=None, stuck=None, lost=None)")]
     fn disturb(&self, py: Python<'_>, what: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let event = arguments(py, what, &[])?;
         event.set_item("at_s", 0.0)?;
@@ -299,5 +303,134 @@ impl PreisachPlant {
 
     fn __repr__(&self) -> &'static str {
         "<PreisachPlant, simulated: voltage [V] → displacement [um]>"
+    }
+}
+
+/// A simulated shape-memory wire whose transformation binds heat, pulled by a spring. Only its
+/// displacement is measured.
+///
+/// Cosine kinetics of Liang & Rogers (1990), latent heat, and natural convection (Churchill & Chu
+/// 1975). Drive: duty, from 0 to 1. Input of the hysteresis: temperature, °C. Output: displacement,
+/// mm.
+///
+/// Parameters
+/// ----------
+/// load_n : float
+///     Force on the cold wire, N, from 1 to 4.
+/// stiffness_n_per_mm : float
+///     Of the spring, N/mm, from 0 (a weight) to 0.2.
+/// room_degc : float
+///     Room temperature, °C, from -20 to 50.
+/// latent_heat_j_per_g : float
+///     Of the whole transformation, J/g, from 0 to 40.
+/// strain : float
+///     Largest recoverable strain, from 0.01 to 0.067.
+/// drive : {'duty', 'current'}
+///     Whether the power is proportional to the drive or to its square.
+/// limit_a : float
+///     Current at full drive, A, from 0.1 to 0.6.
+/// sensor : dict, optional
+///     As those of `SpringPlant`.
+/// seed : int
+///     Of the sensor's noise.
+///
+/// Raises
+/// ------
+/// RigError
+///     Names the first number that does not fit.
+/// TypeError, ValueError
+///     For unknown options, and values that are no numbers.
+///
+/// Examples
+/// --------
+/// >>> wire = pyhysteron.LatentWirePlant()
+/// >>> wire.write(1.0)
+/// >>> wire.advance(10.0)
+/// >>> wire.truth()[0] > 3.9
+/// True
+#[pyclass(frozen, extends = SimulatedPlant, module = "pyhysteron")]
+pub(crate) struct LatentWirePlant;
+
+#[pymethods]
+impl LatentWirePlant {
+    #[new]
+    #[pyo3(signature = (**options), text_signature = "(*, load_n=3.0, stiffness_n_per_mm=0.1, room_degc=20.0, latent_heat_j_per_g=20.0, strain=0.04, drive='duty', limit_a=0.3, sensor=..., seed=1)")]
+    fn new(
+        py: Python<'_>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let options = arguments(py, options, &["sensor"])?;
+        let options: LatentWirePlantOptions = self::options("LatentWirePlant", options.as_any())?;
+        let plant: Boxed = Box::new(plant::LatentWirePlant::new(&options).raise()?);
+        let (inner, options) = (Shared::new(plant), PlantOptions::LatentWire(options));
+        Ok(PyClassInitializer::from(SimulatedPlant { inner, options }).add_subclass(Self))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "<LatentWirePlant, simulated: duty → temperature [degC] → displacement [mm]>"
+    }
+}
+
+/// A simulated piezo stage: Bouc-Wen hysteresis, creep, a resonance, and a drive that comes late.
+///
+/// `h = d u - z`, `z' = α d u' - β |u'| z - γ u' |z|`. Drive: voltage, V. Input of the hysteresis:
+/// the voltage that acts, V. Output: displacement, µm.
+///
+/// Parameters
+/// ----------
+/// load_n : float
+///     Force against the stage, N, from 0 to 20; 5 N push it back by 1 µm.
+/// limit_v : float
+///     Highest drive, V, from 1 to 150.
+/// alpha : float
+///     Share that the hysteresis takes away at first, from 0 to 0.9.
+/// beta, gamma : float
+///     How fast it saturates, 1/V, from 0.001 to 1, and how unlike its two sides are, from -beta to
+///     beta.
+/// creep : float
+///     Share of the three terms at 0.3, 3 and 30 s together, from 0 to 0.3.
+/// resonance_hz, damping : float
+///     From 20 to 20000 Hz; damping ratio from 0.001 to 0.9.
+/// delay_s : float
+///     Time until a drive acts, s, from 0 to 0.1.
+/// sensor : dict, optional
+///     As those of `SpringPlant`.
+/// seed : int
+///     Of the sensor's noise.
+///
+/// Raises
+/// ------
+/// RigError
+///     Names the first number that does not fit.
+/// TypeError, ValueError
+///     For unknown options, and values that are no numbers.
+///
+/// Examples
+/// --------
+/// >>> stage = pyhysteron.BoucWenPlant()
+/// >>> stage.write(100.0)
+/// >>> stage.advance(0.0005)
+/// >>> stage.truth()  # the voltage acts now, and moves nothing yet
+/// (0.0, 100.0)
+#[pyclass(frozen, extends = SimulatedPlant, module = "pyhysteron")]
+pub(crate) struct BoucWenPlant;
+
+#[pymethods]
+impl BoucWenPlant {
+    #[new]
+    #[pyo3(signature = (**options), text_signature = "(*, load_n=0.0, limit_v=100.0, alpha=0.3, beta=0.02, gamma=0.01, creep=0.03, resonance_hz=400.0, damping=0.03, delay_s=0.0005, sensor=..., seed=1)")]
+    fn new(
+        py: Python<'_>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let options = arguments(py, options, &["sensor"])?;
+        let options: BoucWenPlantOptions = self::options("BoucWenPlant", options.as_any())?;
+        let plant: Boxed = Box::new(plant::BoucWenPlant::new(&options).raise()?);
+        let (inner, options) = (Shared::new(plant), PlantOptions::BoucWen(options));
+        Ok(PyClassInitializer::from(SimulatedPlant { inner, options }).add_subclass(Self))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "<BoucWenPlant, simulated: voltage [V] → displacement [um]>"
     }
 }

@@ -4,24 +4,29 @@
 //!   through a thermocouple and an LVDT.
 //! - [`PreisachPlant`]: a piezo-like actuator with an amplifier, made of relays that no model of
 //!   this toolkit has on its plane.
-//!
 //! - [`WirePlant`]: a wire heated by a duty, of which only the displacement is measured.
+//! - [`LatentWirePlant`]: a wire whose transformation binds heat, from published laws.
+//! - [`BoucWenPlant`]: a piezo stage with Bouc-Wen hysteresis, creep, a resonance and a delay.
 //!
 //! All are read through a [`SensorChain`]. None contains a model, an operator or a table of the
 //! toolkit, so no model is tested on itself. Their options are plain data that a scenario file can
 //! set.
 
+mod bouc_wen;
 mod cloud;
 mod drift;
 mod fatigue;
+mod latent_wire;
 mod preisach;
 mod relays;
 mod sensor;
 mod spring;
 mod wire;
 
+pub use bouc_wen::{BoucWenPlant, BoucWenPlantOptions};
 pub use drift::DriftOptions;
 pub use fatigue::FatigueOptions;
+pub use latent_wire::{HeatingDrive, LatentWirePlant, LatentWirePlantOptions};
 pub use preisach::{PreisachPlant, PreisachPlantOptions};
 pub use sensor::{SensorChain, SensorOptions};
 pub use spring::{SpringPlant, SpringPlantOptions};

@@ -234,6 +234,7 @@ impl SimulatedPlant for PreisachPlant {
                 self.relays.replace(&cloud(self.options.levels, load_n));
                 self.follow(0.0);
             }
+            Disturbance::Gain(_) => return Err(RigError::NoSuchDisturbance("gain").into()),
             Disturbance::Stuck(stuck) => self.output.set_stuck(stuck),
             Disturbance::Lost(lost) => self.output.set_lost(lost),
             Disturbance::Room(_) => return Err(RigError::NoSuchDisturbance("room").into()),

@@ -188,6 +188,7 @@ impl SimulatedPlant for SpringPlant {
             }
             Disturbance::Room(degc) => self.plant.set_room_degc(degc)?,
             Disturbance::Predeformation(mm) => self.plant.set_predeformation_mm(mm)?,
+            Disturbance::Gain(_) => return Err(RigError::NoSuchDisturbance("gain").into()),
             Disturbance::Stuck(stuck) => self.lvdt.set_stuck(stuck),
             Disturbance::Lost(lost) => self.lvdt.set_lost(lost),
         }

@@ -179,6 +179,7 @@ impl SimulatedPlant for WirePlant {
                 check_room(degc)?;
                 self.options.room_degc = degc;
             }
+            Disturbance::Gain(_) => return Err(RigError::NoSuchDisturbance("gain").into()),
             Disturbance::Stuck(stuck) => self.sensor.set_stuck(stuck),
             Disturbance::Lost(lost) => self.sensor.set_lost(lost),
             Disturbance::Predeformation(_) => {

@@ -34,5 +34,6 @@ pub use plant::{Plant, Rig};
 pub use reproduction::{LEVELS, RANGE_DEGC, Reproduction};
 pub use sensors::Sensor;
 pub use spring::{Ring, Spring};
+pub(crate) use thermal::Body;
 pub use thermal::Wire;
 pub use transformation::{Direction, MaterialPoint, Transformation};

@@ -88,7 +88,11 @@ impl Plant {
         };
         let mut plant = Self {
             rig,
-            body: Body::new(&rig.wire, &rig.spring),
+            body: Body::new(
+                &rig.wire,
+                rig.spring.wire_diameter_mm,
+                rig.spring.wire_length_mm(),
+            ),
             cold_deflection_mm: 0.0,
             temperature_degc: rig.room_degc,
             shift_k: 0.0,

@@ -6,7 +6,6 @@
 
 use super::convection::still_air;
 use super::error::{RigError, check};
-use super::spring::Spring;
 use core::f64::consts::PI;
 
 /// Thermal and electrical constants of the wire. The default is NiTi as in Dynalloy's technical
@@ -71,9 +70,9 @@ impl Wire {
     }
 }
 
-/// The thermal body that a [`Wire`] makes of a [`Spring`]: extensive quantities in SI units.
+/// The thermal body that a [`Wire`] of some diameter and length is: extensive quantities in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Body {
+pub(crate) struct Body {
     diameter_m: f64,
     surface_m2: f64,
     heat_capacity_j_per_k: f64,
@@ -83,9 +82,9 @@ pub(super) struct Body {
 }
 
 impl Body {
-    pub(super) fn new(wire: &Wire, spring: &Spring) -> Self {
-        let diameter_m = spring.wire_diameter_mm * 1e-3;
-        let length = spring.wire_length_mm() * 1e-3;
+    pub(crate) fn new(wire: &Wire, diameter_mm: f64, length_mm: f64) -> Self {
+        let diameter_m = diameter_mm * 1e-3;
+        let length = length_mm * 1e-3;
         let area = PI * diameter_m * diameter_m / 4.0;
         let mass = wire.density_kg_per_m3 * area * length;
         let ohm = |uohm_cm: f64| uohm_cm * 1e-8 * length / area;
@@ -105,9 +104,20 @@ impl Body {
     }
 
     /// Heat that flows into the wire, W: what the current makes less what the air takes.
-    pub(super) fn net_power_w(&self, current_a: f64, xi: f64, t_degc: f64, room_degc: f64) -> f64 {
+    pub(crate) fn net_power_w(&self, current_a: f64, xi: f64, t_degc: f64, room_degc: f64) -> f64 {
         let h = still_air(self.diameter_m, t_degc, room_degc);
         current_a * current_a * self.resistance_ohm(xi) - h * self.surface_m2 * (t_degc - room_degc)
+    }
+
+    /// Heat content, J, at the temperature `t_degc` and the martensite fraction `xi`, over that of
+    /// austenite at 0 °C: martensite has less by the latent heat.
+    pub(crate) fn heat_j(&self, t_degc: f64, xi: f64) -> f64 {
+        self.heat_capacity_j_per_k * t_degc - self.latent_heat_j * xi
+    }
+
+    /// The temperature, °C, at the heat content `heat_j` and the martensite fraction `xi`.
+    pub(crate) fn temperature_degc(&self, heat_j: f64, xi: f64) -> f64 {
+        (heat_j + self.latent_heat_j * xi) / self.heat_capacity_j_per_k
     }
 
     /// Heat that raises the temperature by 1 K where `ξ` changes by `slope` (1/K), J/K.

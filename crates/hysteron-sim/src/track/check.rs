@@ -65,6 +65,11 @@ impl Scenario {
             )?;
             seen.push(*kind);
         }
+        for (n, (time_s, drive)) in self.before.iter().enumerate() {
+            let fine = (0.0..=1e5).contains(time_s) && drive.is_finite();
+            let needed = "a time from 0 to 100000 s and a finite drive are needed";
+            require(fine, &format!("before[{n}]"), needed)?;
+        }
         self.check_model()?;
         let LoopOptions {
             filter_s,
@@ -155,9 +160,9 @@ impl Scenario {
             last = event.at_s;
             let whats = event.disturbances();
             require(
-                !whats.is_empty(),
+                !whats.is_empty() || event.window.is_some(),
                 &field,
-                "load_n, room_degc, predeformation_mm, stuck or lost is needed",
+                "load_n, room_degc, predeformation_mm, gain, stuck, lost or window is needed",
             )?;
             for what in whats {
                 plant

@@ -119,6 +119,10 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
             let model = identify::identify(scenario, &scheme, seed + 1_000_000)?;
             let runs = scenario.controllers.par_iter().map(|kind| {
                 let mut plant = scenario.plant.build(seed)?;
+                for &(time_s, drive) in &scenario.before {
+                    plant.write(drive);
+                    plant.advance(time_s);
+                }
                 let mut controller = controller(scenario, &scheme, &model, gains, *kind)?;
                 let trace = run(
                     plant.as_mut(),

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub struct ModelOptions {
     /// Number of levels, from 2 to 100.
     pub levels: usize,
-    /// Lowest and highest level, in the input's unit. For the wire, the lowest and the highest drive
+    /// Lowest and highest level, in the input's unit. For a wire, the lowest and the highest drive
     /// of the tests; the levels of its temperature follow from the recording.
     pub range: (f64, f64),
     /// Strength of the smoothness across, from 0; see [`Smooth`](hysteron::Smooth). Default 0.

@@ -1,7 +1,8 @@
 //! The plant of a scenario, and what happens to it.
 
 use crate::plant::{
-    PreisachPlant, PreisachPlantOptions, SensorOptions, SpringPlant, SpringPlantOptions, WirePlant,
+    BoucWenPlant, BoucWenPlantOptions, LatentWirePlant, LatentWirePlantOptions, PreisachPlant,
+    PreisachPlantOptions, SensorOptions, SpringPlant, SpringPlantOptions, WirePlant,
     WirePlantOptions,
 };
 use hysteron::control::{Disturbance, SimulatedPlant};
@@ -18,6 +19,10 @@ pub enum PlantOptions {
     Preisach(PreisachPlantOptions),
     /// The simulated wire without a thermometer.
     Wire(WirePlantOptions),
+    /// The simulated wire whose transformation binds heat.
+    LatentWire(LatentWirePlantOptions),
+    /// The simulated piezo stage with Bouc-Wen hysteresis.
+    BoucWen(BoucWenPlantOptions),
 }
 
 /// Something that happens.
@@ -32,10 +37,15 @@ pub struct Event {
     pub room_degc: Option<f64>,
     /// The pre-deformation becomes this, mm.
     pub predeformation_mm: Option<f64>,
+    /// The actuator keeps this share of its first stroke.
+    pub gain: Option<f64>,
     /// The output's sensor stands still (`true`) or works again.
     pub stuck: Option<bool>,
     /// The output's sensor reads nothing (`true`) or works again.
     pub lost: Option<bool>,
+    /// What to call the window that begins here, also where nothing happens to the plant. It is
+    /// taken whole. By default it is named after what happens.
+    pub window: Option<String>,
 }
 
 /// What happens before which sample, in order, as [`Course`](hysteron::control::Course) has it.
@@ -58,6 +68,8 @@ impl PlantOptions {
             "spring" => Some(Self::Spring(SpringPlantOptions::default())),
             "preisach" => Some(Self::Preisach(PreisachPlantOptions::default())),
             "wire" => Some(Self::Wire(WirePlantOptions::default())),
+            "latent-wire" => Some(Self::LatentWire(LatentWirePlantOptions::default())),
+            "bouc-wen" => Some(Self::BoucWen(BoucWenPlantOptions::default())),
             _ => None,
         }
     }
@@ -80,6 +92,14 @@ impl PlantOptions {
                 let options = WirePlantOptions { seed, ..*options };
                 Box::new(WirePlant::new(&options)?)
             }
+            Self::LatentWire(options) => {
+                let options = LatentWirePlantOptions { seed, ..*options };
+                Box::new(LatentWirePlant::new(&options)?)
+            }
+            Self::BoucWen(options) => {
+                let options = BoucWenPlantOptions { seed, ..*options };
+                Box::new(BoucWenPlant::new(&options)?)
+            }
         })
     }
 
@@ -89,7 +109,8 @@ impl PlantOptions {
         match self {
             Self::Spring(options) => (0.0, options.limit_a),
             Self::Preisach(options) => (0.0, options.limit_v),
-            Self::Wire(_) => (0.0, 1.0),
+            Self::Wire(_) | Self::LatentWire(_) => (0.0, 1.0),
+            Self::BoucWen(options) => (0.0, options.limit_v),
         }
     }
 
@@ -102,12 +123,12 @@ impl PlantOptions {
                 Quantity::with_unit("temperature", "degC"),
                 Quantity::with_unit("displacement", "mm"),
             ],
-            Self::Preisach(_) => [
+            Self::Preisach(_) | Self::BoucWen(_) => [
                 Quantity::with_unit("voltage", "V"),
                 Quantity::with_unit("voltage", "V"),
                 Quantity::with_unit("displacement", "um"),
             ],
-            Self::Wire(_) => [
+            Self::Wire(_) | Self::LatentWire(_) => [
                 Quantity::named("duty"),
                 Quantity::with_unit("temperature", "degC"),
                 Quantity::with_unit("displacement", "mm"),
@@ -129,6 +150,8 @@ impl PlantOptions {
                     && (!options.measure_input || noisy(&options.input_sensor))
             }
             Self::Wire(options) => noisy(&options.sensor),
+            Self::LatentWire(options) => noisy(&options.sensor),
+            Self::BoucWen(options) => noisy(&options.sensor),
         }
     }
 
@@ -140,7 +163,7 @@ impl PlantOptions {
     /// Whether the drive heats and nothing measures the temperature, so that the model needs a
     /// thermal body.
     pub(super) fn has_body(&self) -> bool {
-        matches!(self, Self::Wire(_))
+        matches!(self, Self::Wire(_) | Self::LatentWire(_))
     }
 }
 
@@ -152,6 +175,7 @@ impl Event {
             self.load_n.map(Disturbance::Load),
             self.room_degc.map(Disturbance::Room),
             self.predeformation_mm.map(Disturbance::Predeformation),
+            self.gain.map(Disturbance::Gain),
             self.stuck.map(Disturbance::Stuck),
             self.lost.map(Disturbance::Lost),
         ];
@@ -161,10 +185,14 @@ impl Event {
     /// What happens, in words.
     #[must_use]
     pub fn words(&self) -> String {
+        if let Some(window) = &self.window {
+            return window.clone();
+        }
         let words = self.disturbances().into_iter().map(|what| match what {
             Disturbance::Load(n) => format!("load {n} N"),
             Disturbance::Room(t) => format!("room {t} degC"),
             Disturbance::Predeformation(x) => format!("pre-deformation {x} mm"),
+            Disturbance::Gain(share) => format!("gain {share}"),
             Disturbance::Stuck(true) => "sensor stuck".into(),
             Disturbance::Lost(true) => "sensor lost".into(),
             Disturbance::Stuck(false) | Disturbance::Lost(false) => "sensor works again".into(),

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use std::path::Path;
 
 /// The scenarios that need no file.
-const BUILTIN: [(&str, &str); 7] = [
+const BUILTIN: [(&str, &str); 9] = [
     ("load-step", include_str!("builtin/load-step.toml")),
     (
         "load-step-preisach",
@@ -18,6 +18,8 @@ const BUILTIN: [(&str, &str); 7] = [
     ("drift", include_str!("builtin/drift.toml")),
     ("faults", include_str!("builtin/faults.toml")),
     ("wire", include_str!("builtin/wire.toml")),
+    ("latent-wire", include_str!("builtin/latent-wire.toml")),
+    ("bouc-wen", include_str!("builtin/bouc-wen.toml")),
 ];
 
 /// What `track` compares controllers on. All times are in seconds.
@@ -42,6 +44,11 @@ pub struct Scenario {
     pub model: ModelOptions,
     /// What the output is to follow: the sum of these.
     pub reference: Vec<Reference>,
+    /// Drives held before a run, `[time_s, drive]`, of which no controller is told: the model's
+    /// operators begin elsewhere than the plant. Not before the experiment that a model is
+    /// identified from.
+    #[serde(default)]
+    pub before: Vec<(f64, f64)>,
     /// What happens to the plant.
     #[serde(default)]
     pub disturbance: Vec<Event>,

@@ -49,7 +49,8 @@ const TURNED: f64 = 0.05;
 const RESTS: f64 = 0.002;
 
 /// The windows of a scenario: before the first disturbance, and between them, each with and without
-/// the time to settle; without disturbances the halves of the run.
+/// the time to settle; without disturbances the halves of the run. A window that a scenario names is
+/// taken whole.
 #[must_use]
 pub fn windows(scenario: &Scenario) -> Vec<Window> {
     let window = |name: &str, from_s: f64, to_s: f64, settled: bool| Window {
@@ -59,14 +60,18 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
         settled,
     };
     let (settle, end) = (scenario.settle_s, scenario.duration_s);
+    let unknown =
+        (!scenario.before.is_empty()).then(|| window("unknown start", 0.0, settle, false));
     let Some(first) = scenario.disturbance.first() else {
         let middle = 0.5 * (settle + end);
-        return vec![
+        let halves = [
             window("first half", settle, middle, true),
             window("second half", middle, end, true),
         ];
+        return unknown.into_iter().chain(halves).collect();
     };
-    let mut windows = vec![window("before", settle, first.at_s, true)];
+    let mut windows: Vec<Window> = unknown.into_iter().collect();
+    windows.push(window("before", settle, first.at_s, true));
     // What happens at the same time is one event.
     let events: Vec<&[Event]> = scenario
         .disturbance
@@ -77,6 +82,10 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
         let event = &together[0];
         let words: Vec<String> = together.iter().map(Event::words).collect();
         let words = words.join(", ");
+        if event.window.is_some() {
+            windows.push(window(&words, event.at_s, next, true));
+            continue;
+        }
         windows.push(window(&format!("after {words}"), event.at_s, next, false));
         let settled = event.at_s + settle;
         if settled < next && settle > 0.0 {

@@ -88,6 +88,8 @@ fn plant(known: &Known, load_n: f64, seed: u64) -> Box<dyn SimulatedPlant> {
         PlantOptions::Spring(options) => options.load_n = load_n,
         PlantOptions::Preisach(options) => options.load_n = load_n,
         PlantOptions::Wire(options) => options.load_n = load_n,
+        PlantOptions::LatentWire(options) => options.load_n = load_n,
+        PlantOptions::BoucWen(options) => options.load_n = load_n,
     }
     options.build(seed).unwrap()
 }

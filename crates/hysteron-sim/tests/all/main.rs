@@ -7,6 +7,7 @@ mod loops;
 mod comparison;
 mod control;
 mod faults;
+mod foreign;
 mod rig;
 mod safety;
 mod sensor_lag;

@@ -1,7 +1,9 @@
 //! The simulated plants: time, load, drift, sensors, and what they refuse.
 #![allow(clippy::unwrap_used)]
 
+mod bouc_wen;
 mod changes;
+mod latent_wire;
 mod options;
 mod time;
 

@@ -46,6 +46,8 @@ pub enum Disturbance {
     Room(f64),
     /// The pre-deformation, mm.
     Predeformation(f64),
+    /// Ageing: the share of its first stroke that the actuator still has.
+    Gain(f64),
     /// True: the output's sensor repeats its last reading. False: it works again.
     Stuck(bool),
     /// True: the output's sensor reads NaN. False: it works again.

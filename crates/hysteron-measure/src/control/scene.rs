@@ -1,0 +1,145 @@
+//! A scenario, its errors, and its table.
+
+use super::bound::bound;
+use crate::result::Result;
+use hysteron::Progress;
+use hysteron_sim::track::{Comparison, Kind, Scenario, Tuning, Window, track};
+
+const KINDS: [(&str, Kind); 5] = [
+    ("PID", Kind::Pid),
+    ("inverse", Kind::InverseAnticipate),
+    ("adaptive inverse", Kind::AdaptiveAnticipate),
+    ("inverse + PID", Kind::InversePidAnticipate),
+    ("adaptive inverse + PID", Kind::AdaptivePidAnticipate),
+];
+
+/// The errors of each controller, a median over the runs for each window.
+type Row = (String, Vec<f64>);
+
+pub(super) struct Scene {
+    pub(super) name: &'static str,
+    title: String,
+    unit: String,
+    windows: Vec<Window>,
+    rows: Vec<Row>,
+}
+
+impl Scene {
+    /// Runs the built-in scenario `name`.
+    pub(super) fn run(name: &'static str, seeds: u32) -> Result<Self> {
+        let mut scenario = Scenario::load(name)?;
+        scenario.seeds = seeds;
+        scenario.controllers = KINDS.map(|(_, kind)| kind).to_vec();
+        let found = track(&scenario, Progress::NONE)?;
+        let shown = shown(&found.windows);
+        let windows: Vec<Window> = shown.iter().map(|w| found.windows[*w].clone()).collect();
+        let named = KINDS.iter().enumerate();
+        let mut rows: Vec<Row> = named
+            .map(|(k, (name, _))| ((*name).into(), medians(&found, k, &shown)))
+            .collect();
+        rows[0].0 += by(scenario.shared.tuning);
+        if let Some(other) = pid_by_the_other_test(&scenario, &shown) {
+            rows.insert(1, other);
+        }
+        let bound = bound(&scenario, &windows)?;
+        rows.extend(bound.map(|errors| ("bound".into(), errors)));
+        let [_, _, output] = scenario.plant.quantities();
+        Ok(Self {
+            name,
+            title: scenario.title,
+            unit: output.unit.unwrap_or_default(),
+            windows,
+            rows,
+        })
+    }
+
+    pub(super) fn print(&self) {
+        println!("\n## `{}`: {}, {}\n", self.name, self.title, self.unit);
+        let heads = self.windows.iter().map(words);
+        println!("| | {} |", heads.collect::<Vec<_>>().join(" | "));
+        println!("| --- |{}", " ---: |".repeat(self.windows.len()));
+        for (name, errors) in &self.rows {
+            let cells = errors.iter().map(|error| format!("{error:.3}"));
+            println!("| {name} | {} |", cells.collect::<Vec<_>>().join(" | "));
+        }
+    }
+
+    /// Where an adaptive inverse has more than `most` times the error of the fixed one.
+    pub(super) fn lost_to_fixed(&self, most: f64) -> Vec<String> {
+        let alone = self.lost("adaptive inverse", &["inverse"], most);
+        let both = self.lost("adaptive inverse + PID", &["inverse + PID"], most);
+        let alone = alone.into_iter().map(|(w, ratio)| (w, "alone", ratio));
+        let both = both.into_iter().map(|(w, ratio)| (w, "with PID", ratio));
+        let each = alone.chain(both);
+        each.map(|(w, how, ratio)| format!("{}, {how}, {ratio:.2}", words(&self.windows[w])))
+            .collect()
+    }
+
+    /// Where an adaptive inverse and PID has more than `most` times the error of the PID alone.
+    pub(super) fn lost_to_pid(&self, most: f64) -> Vec<String> {
+        let pids = self.rows.iter().map(|(name, _)| name.as_str());
+        let pids: Vec<&str> = pids.filter(|name| name.starts_with("PID")).collect();
+        let lost = self.lost("adaptive inverse + PID", &pids, most);
+        lost.into_iter()
+            .map(|(w, ratio)| format!("{}, {ratio:.2}", words(&self.windows[w])))
+            .collect()
+    }
+
+    fn lost(&self, one: &str, others: &[&str], most: f64) -> Vec<(usize, f64)> {
+        let of = |name: &str| {
+            let row = self.rows.iter().find(|(row, _)| row == name);
+            row.map_or(&[][..], |(_, errors)| errors)
+        };
+        let ratio = |w: usize| {
+            let best = others.iter().map(|other| of(other)[w]);
+            of(one)[w] / best.fold(f64::INFINITY, f64::min)
+        };
+        let each = (0..self.windows.len()).map(|w| (w, ratio(w)));
+        each.filter(|(_, ratio)| *ratio > most).collect()
+    }
+}
+
+fn by(tuning: Tuning) -> &'static str {
+    match tuning {
+        Tuning::Relay => ", relay test",
+        Tuning::Step => ", step test",
+    }
+}
+
+/// None where the plant does not answer that test.
+fn pid_by_the_other_test(scenario: &Scenario, windows: &[usize]) -> Option<Row> {
+    let mut scenario = scenario.clone();
+    scenario.controllers = vec![Kind::Pid];
+    scenario.shared.tuning = match scenario.shared.tuning {
+        Tuning::Relay => Tuning::Step,
+        Tuning::Step => Tuning::Relay,
+    };
+    let found = track(&scenario, Progress::NONE).ok()?;
+    let name = format!("PID{}", by(scenario.shared.tuning));
+    Some((name, medians(&found, 0, windows)))
+}
+
+/// The places of settled windows, and of those that are over before anything settles.
+fn shown(windows: &[Window]) -> Vec<usize> {
+    let settles = |w: usize| {
+        let next = windows.get(w + 1);
+        next.is_some_and(|next| next.name == format!("{}, settled", windows[w].name))
+    };
+    (0..windows.len()).filter(|w| !settles(*w)).collect()
+}
+
+fn words(window: &Window) -> String {
+    let name = window.name.trim_end_matches(", settled");
+    name.trim_start_matches("after ").into()
+}
+
+/// The medians of the errors of the `k`-th controller in these windows.
+fn medians(found: &Comparison, k: usize, windows: &[usize]) -> Vec<f64> {
+    let of = |w: &usize| median(found.scores[k].iter().map(|run| run[*w].rmse).collect());
+    windows.iter().map(of).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
