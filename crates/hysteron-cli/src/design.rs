@@ -3,14 +3,12 @@
 use crate::terminal::{Result, print};
 use crate::{args, text};
 use hysteron::{
-    AtomicFile, Design, DesignOptions, Excitation, Own, Plane, Quantity, Rates, TableReader,
-    TableWriter,
+    AtomicFile, Design, DesignOptions, Excitation, Own, Quantity, Rates, TableReader, TableWriter,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Design) -> Result<()> {
-    let (min, max) = args.range;
     if let Some(figure) = &args.figure {
         hysteron::refuse_one_file(&args.out, figure)?;
     }
@@ -31,13 +29,14 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
         operator: args.operator.into(),
         budget_s: args.budget.map(|minutes| 60.0 * minutes),
         step_s: args.step,
-        ..DesignOptions::new(
-            Plane::new(min, max, args.levels)?,
+        ..DesignOptions::within(
+            args.range,
+            args.levels,
             Rates {
                 heating: args.heating_rate,
                 cooling: args.cooling_rate,
             },
-        )
+        )?
     };
     let column = args.input.as_deref().unwrap_or("input");
     let recorded: Vec<Vec<f64>> = args
