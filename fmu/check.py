@@ -217,6 +217,66 @@ def every_stage(folder, parts):
     print(f"   {4 * count} samples: equal to the command's bit for bit")
 
 
+def late(folder):
+    """A model with a dead time: the command's numbers, bit for bit."""
+    vector = vectors()["forward-mkp-20"]
+    model = folder / "late.json"
+    late_model = vector["model"] | {"version": 4, "delay": {"samples": 3, "interval_s": 1.0}}
+    model.write_text(json.dumps(late_model))
+    for fmi in (2, 3):
+        fmu, run_ = Fmu(folder, model, False, fmi), vector["runs"][0]
+        own = core(folder, model, run_, False)
+        check(np.array_equal(fmu.simulate(run_)[0], own), f"FMI {fmi}: another dead time")
+        check(not np.array_equal(own, run_["output"]), "a dead time that changes nothing")
+
+
+def controller(folder):
+    """The third block in a loop with the first: it follows, by hand and by itself, and gives up."""
+    model = folder / "loop.json"
+    model.write_text(json.dumps(vectors()["forward-mkp-20"]["model"]))
+    reach = sum(vectors()["forward-mkp-20"]["model"]["weights"])
+    options = ["--controller", "--dt", 0.1, "--drive-range", "0,80", "--gains", "0.1,1,0"]
+    for fmi in (2, 3):
+        fmu = Fmu(folder, model, options=options, fmi=fmi)
+        problems = validate_fmu(str(fmu.path))
+        check(not problems, f"{fmu.path.name}: {problems}")
+        two = fmi == 2
+        references = {v.name: v.valueReference for v in fmu.description.modelVariables}
+        plant = Fmu(folder, model, False, fmi).instance()
+        loop = fmu.instance()
+        real = loop.setReal if two else loop.setFloat64
+        flag = loop.getInteger if two else loop.getInt32
+        now, drive, worst = 0.0, 0.0, 0.0
+
+        def sample(reference, reading):
+            nonlocal now, drive
+            real([references[fmu.signal], references["measured"]], [reference, reading])
+            loop.doStep(currentCommunicationPoint=now, communicationStepSize=0.1)
+            now += 0.1
+            drive = (loop.getReal if two else loop.getFloat64)([references[fmu.result]])[0]
+            return flag([references["status"]])[0]
+
+        for n in range(400):
+            output = Fmu.next(fmu, plant, n, drive)
+            wanted = reach * (0.5 - 0.3 * np.cos(n * 0.03))
+            check(not sample(wanted, output) & (4 | 8 | 16), f"FMI {fmi}: a fault without one")
+            if n > 50:
+                worst = max(worst, abs(output - wanted))
+        check(worst < 0.03 * reach, f"FMI {fmi}: the loop misses by {worst / reach}")
+        for n in range(10):
+            status = sample(wanted, math.nan)
+        check(status & 16 and drive == 0.0, f"FMI {fmi}: not safe without readings, {status}")
+        loop.setBoolean([references["manual"]], [True])
+        real([references["manual_drive"]], [33.0])
+        check(not sample(wanted, 0.0) & 16 and drive == 33.0, f"FMI {fmi}: not by hand")
+        loop.setBoolean([references["manual"]], [False])
+        check(not sample(wanted, 0.0) & 16, f"FMI {fmi}: given up for ever")
+        for slave in (plant, loop):
+            slave.terminate()
+            slave.freeInstance()
+        print(f"   FMI {fmi}: largest error in the loop {worst / reach:.1%} of the range")
+
+
 def states(fmus):
     """Two instances; save, restore, bytes and reset in the middle of a run."""
     run_ = vectors()["forward-mkp-20"]["runs"][1]["input"]
@@ -438,6 +498,10 @@ def main():
         series(fmus, folder)
         step("a model with every stage")
         stages(folder)
+        step("a dead time")
+        late(folder)
+        step("the controller in a loop")
+        controller(folder)
         step("two instances, states, reset")
         states(fmus)
         step("a corrupted model")

@@ -53,10 +53,11 @@ def has(tool, package):
 class Fmu:
     """An exported FMU: its file, description and unpacked folder."""
 
-    def __init__(self, folder, model, inverse=False, fmi=2):
+    def __init__(self, folder, model, inverse=False, fmi=2, options=()):
         self.inverse, self.fmi = inverse, fmi
-        self.path = folder / f"{model.stem}-{'inverse' if inverse else 'forward'}-{fmi}.fmu"
-        options = ["--inverse"] * inverse + ["--fmi", fmi]
+        kind = "controller" if options else "inverse" if inverse else "forward"
+        self.path = folder / f"{model.stem}-{kind}-{fmi}.fmu"
+        options = [*options, *["--inverse"] * inverse, "--fmi", fmi]
         self.about = json.loads(
             run(HYSTERON, "export", "fmu", model, "-o", self.path, "--json", *options)
         )

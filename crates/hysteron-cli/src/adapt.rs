@@ -1,9 +1,10 @@
 //! `hysteron adapt`
 
+use crate::columns::{Given, Named};
 use crate::terminal::{Result, print};
 use crate::{args, model, recording, text};
 use hysteron::{
-    Adapted, Channel, Columns, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Stuck,
+    Adapted, Channel, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Stuck,
     TableWriter,
 };
 use serde_json::{Value, json};
@@ -29,12 +30,14 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         TableWriter::create(Some(target))
     });
     let table = table.transpose()?;
-    let columns = Columns {
-        input: &args.input,
-        output: &args.output,
+    let given = Given {
+        input: args.input.as_deref(),
+        output: args.output.as_deref(),
         time: args.time.as_deref(),
         load: None,
     };
+    let named = Named::of(&args.data, &given, &args.repair)?;
+    let columns = named.columns();
     let recordings = recording::segments(&args.data, columns, &args.repair)?;
     let mut adapted = hysteron::adapt(
         &model,

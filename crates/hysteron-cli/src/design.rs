@@ -2,15 +2,12 @@
 
 use crate::terminal::{Result, print};
 use crate::{args, text};
-use hysteron::{
-    Design, DesignOptions, Excitation, Plane, Quantity, Rates, TableReader, TableWriter,
-};
+use hysteron::{Design, DesignOptions, Excitation, Quantity, Rates, TableReader, TableWriter};
 use hysteron_files::{AtomicFile, Own};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Design) -> Result<()> {
-    let (min, max) = args.range;
     if let Some(figure) = &args.figure {
         hysteron_files::refuse_one_file(&args.out, figure)?;
     }
@@ -31,13 +28,14 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
         operator: args.operator.into(),
         budget_s: args.budget.map(|minutes| 60.0 * minutes),
         step_s: args.step,
-        ..DesignOptions::new(
-            Plane::new(min, max, args.levels)?,
+        ..DesignOptions::within(
+            args.range,
+            args.levels,
             Rates {
                 heating: args.heating_rate,
                 cooling: args.cooling_rate,
             },
-        )
+        )?
     };
     let column = args.input.as_deref().unwrap_or("input");
     let recorded: Vec<Vec<f64>> = args

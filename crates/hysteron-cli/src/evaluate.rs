@@ -1,9 +1,10 @@
 //! `hysteron evaluate`
 
+use crate::columns::{Given, Named};
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, prepare, recording, text};
-use hysteron::{Columns, Errors, Evaluation, InverseRun, Quantity, Recording, Verdict};
+use hysteron::{Errors, Evaluation, InverseRun, Quantity, Recording, Verdict};
 use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
@@ -19,12 +20,14 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     });
     let folder = folder.transpose()?;
     let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
-    let columns = Columns {
-        input: &args.input,
-        output: &args.output,
+    let given = Given {
+        input: args.input.as_deref(),
+        output: args.output.as_deref(),
         time: args.prepare.time.as_deref(),
         load: load.as_deref(),
     };
+    let named = Named::of(&args.data, &given, &args.repair)?;
+    let columns = named.columns();
     let recordings = recording::segments(&args.data, columns, &args.repair)?;
     let count = recordings.len();
     let recordings = recordings.into_iter().enumerate().map(|(n, recording)| {

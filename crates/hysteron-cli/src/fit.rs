@@ -2,6 +2,7 @@
 
 mod lines;
 
+use crate::columns::{Given, Named};
 use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
@@ -14,11 +15,6 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
-    let columns = Columns {
-        time: args.how.prepare.time.as_deref(),
-        load: args.how.load.as_deref(),
-        ..Columns::new(&args.how.input, &args.how.output)
-    };
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
@@ -28,6 +24,14 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     });
     let inputs = args.data.iter().chain(&args.repeat).chain(held_out);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
+    let given = Given {
+        input: args.how.input.as_deref(),
+        output: args.how.output.as_deref(),
+        time: args.how.prepare.time.as_deref(),
+        load: args.how.load.as_deref(),
+    };
+    let named = Named::of(inputs[0], &given, &args.how.repair)?;
+    let columns = named.columns();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for data in &args.data {

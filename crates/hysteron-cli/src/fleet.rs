@@ -23,10 +23,13 @@ pub(crate) fn run(args: &args::Fleet) -> Result<()> {
 
 fn fit_all(args: &args::FleetFit) -> Result<()> {
     let how = &args.how;
+    let (Some(input), Some(output)) = (&how.input, &how.output) else {
+        return Err("the columns of a fleet are named: give --input and --output".into());
+    };
     let columns = Columns {
         time: how.prepare.time.as_deref(),
         load: how.load.as_deref(),
-        ..Columns::new(&how.input, &how.output)
+        ..Columns::new(input, output)
     };
     let hold_out = match &how.hold_out[..] {
         [] => None,

@@ -2,6 +2,7 @@
 
 mod adapt;
 mod args;
+mod columns;
 mod compare;
 mod demo;
 mod design;

@@ -12,12 +12,13 @@ pub(crate) struct Adapt {
     pub(crate) model: PathBuf,
     /// The recording to learn from
     pub(crate) data: PathBuf,
-    /// Column of the input
+    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
+    /// columns leave no doubt]
     #[arg(long, value_name = "COL")]
-    pub(crate) input: String,
-    /// Column of the output
+    pub(crate) input: Option<String>,
+    /// Column of the output [default: as for --input]
     #[arg(long, value_name = "COL")]
-    pub(crate) output: String,
+    pub(crate) output: Option<String>,
     /// Column of time, in seconds or with its unit in its name, for the table and for a model that
     /// depends on time
     #[arg(long, value_name = "COL")]

@@ -29,12 +29,13 @@ pub(crate) struct Fit {
 /// What fits of one actuator and of a fleet have in common.
 #[derive(Args)]
 pub(crate) struct FitHow {
-    /// Column of the input
+    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
+    /// columns leave no doubt]
     #[arg(long, value_name = "COL")]
-    pub(crate) input: String,
-    /// Column of the output
+    pub(crate) input: Option<String>,
+    /// Column of the output [default: as for --input]
     #[arg(long, value_name = "COL")]
-    pub(crate) output: String,
+    pub(crate) output: Option<String>,
     /// Number of levels K of the plane; it has K(K+1)/2 operators. `auto` chooses it by the error
     /// on branches left out, or by the evidence where there are few branches
     #[arg(long, value_name = "K", default_value = "auto", value_parser = parse_levels_or_auto)]
@@ -104,7 +105,7 @@ pub(crate) struct FitHow {
     /// Identify a thermal body in front of the operators, for an input that heats while the
     /// temperature is not known. The input has to be proportional to the power, as a duty cycle is:
     /// give the square of a current or a voltage. Needs --time
-    #[arg(long, value_enum, value_name = "BODY", requires = "time")]
+    #[arg(long, value_enum, value_name = "BODY")]
     pub(crate) thermal: Option<Thermal>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 25
     /// levels on 60, from 45 on 0]

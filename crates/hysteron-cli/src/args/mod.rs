@@ -230,12 +230,13 @@ pub(crate) struct Evaluate {
     pub(crate) model: PathBuf,
     /// The recording
     pub(crate) data: PathBuf,
-    /// Column of the input
+    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
+    /// columns leave no doubt]
     #[arg(long, value_name = "COL")]
-    pub(crate) input: String,
-    /// Column of the output
+    pub(crate) input: Option<String>,
+    /// Column of the output [default: as for --input]
     #[arg(long, value_name = "COL")]
-    pub(crate) output: String,
+    pub(crate) output: Option<String>,
     #[command(flatten)]
     pub(crate) prepare: PrepareFirst,
     /// State of the operators before the first sample
@@ -313,7 +314,8 @@ pub(crate) struct Inspect {
 
 #[derive(Args)]
 pub(crate) struct Design {
-    /// Lowest and highest level of the plane; the profile starts one level below the lowest
+    /// Range in which the profile stays: it starts at the lowest input, and the plane's lowest level
+    /// is one step above
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) range: (f64, f64),
     /// Number of levels K of the plane; it has K(K+1)/2 operators

@@ -56,8 +56,14 @@ fn plans_a_profile_that_determines_everything() {
     assert_eq!(object["recorded"], Value::Null);
     let samples = table(&path.join("profile.csv"));
     assert_eq!(object["samples"], samples.len());
-    // One step of 60/7 below the lowest level, where everything is off.
-    assert!((samples[0].1 - (20.0 - 60.0 / 7.0)).abs() < 1e-9 && samples[0].0 == 0.0);
+    // At the lowest input everything is off, and no sample leaves the range.
+    assert!((samples[0].1 - 20.0).abs() < 1e-9 && samples[0].0 == 0.0);
+    assert!(
+        samples
+            .iter()
+            .all(|(_, input)| (20.0..=80.0).contains(input))
+    );
+    assert_eq!(object["plane"]["min"], 27.5);
     assert!(samples.iter().any(|(_, input)| *input == 80.0));
     assert_eq!(object["duration_s"], samples[samples.len() - 1].0);
     for pair in samples.windows(2) {

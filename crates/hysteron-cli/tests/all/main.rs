@@ -15,6 +15,7 @@ mod fleet_choice;
 mod hold_out;
 mod identification;
 mod interrupted;
+mod logs;
 mod messages;
 mod options;
 mod pages;

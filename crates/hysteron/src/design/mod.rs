@@ -59,6 +59,33 @@ impl DesignOptions {
             step_s: None,
         }
     }
+
+    /// As [`DesignOptions::new`], for a plane of so many `levels` whose profile never leaves the
+    /// range from `low` to `high`: its bottom, where every operator is off, is not below `low`. The
+    /// lowest level is one step above.
+    ///
+    /// ```
+    /// use hysteron::{DesignOptions, Rates, design};
+    /// let rates = Rates { heating: 2.0, cooling: 0.5 };
+    /// let found = design(&DesignOptions::within((0.0, 120.0), 20, rates)?, &[])?;
+    /// assert!(found.input.iter().all(|volts| (0.0..=120.0).contains(volts)));
+    /// assert_eq!(found.plane.min(), 6.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Core`] for a range or levels that no plane has.
+    pub fn within((low, high): (f64, f64), levels: usize, rates: Rates) -> Result<Self> {
+        let mut min = low + (high - low) / levels.max(1) as f64;
+        // The bottom is off by a rounding or two.
+        loop {
+            let plane = Plane::new(min, high, levels)?;
+            if plane.bottom() >= low {
+                return Ok(Self::new(plane, rates));
+            }
+            min = min.next_up();
+        }
+    }
 }
 
 /// One branch of a profile.

@@ -225,3 +225,47 @@ fn what_cannot_be_is_refused() {
         Err(Error::Core(_))
     ));
 }
+
+#[test]
+fn a_profile_stays_in_its_range_and_keeps_its_rates() {
+    use rand::rngs::StdRng;
+    use rand::{RngExt, SeedableRng};
+    let mut random = StdRng::seed_from_u64(5);
+    for n in 0..300 {
+        let low = random.random_range(-200.0..200.0) * 10f64.powi(random.random_range(-3..3));
+        let high = low + random.random_range(0.01..300.0);
+        let levels = random.random_range(2..40);
+        let rates = Rates {
+            heating: random.random_range(0.01..50.0),
+            cooling: random.random_range(0.01..50.0),
+        };
+        let mut options = DesignOptions::within((low, high), levels, rates).unwrap();
+        options.operator = [Operator::Mkp, Operator::Kp, Operator::Relay][n % 3];
+        let loops = (high - low) * (1.0 / rates.heating + 1.0 / rates.cooling);
+        if random.random_bool(0.5) {
+            options.budget_s = Some(loops * random.random_range(1.5..20.0));
+        }
+        let found = design(&options, &[]).unwrap();
+        let what = format!("{low} to {high}, {levels} levels, {:?}", options.operator);
+        let inside = |input: &f64| (low..=high).contains(input);
+        assert!(found.input.iter().all(inside), "{what}");
+        let travelled = |way: f64| (way - low).abs() <= 0.51 * (high - low);
+        assert!(travelled(found.input[0]), "{what}");
+        // What is left of a difference of two large numbers.
+        let rounding = 1e-6 * (1.0 + low.abs().max(high.abs()) / (high - low));
+        for (time, input) in found.time.windows(2).zip(found.input.windows(2)) {
+            let rate = (input[1] - input[0]) / (time[1] - time[0]);
+            let most = if rate > 0.0 {
+                rates.heating
+            } else {
+                rates.cooling
+            };
+            assert!(
+                rate.abs() <= most * (1.0 + rounding),
+                "{what}: {rate} of {most}"
+            );
+        }
+        let within = |most: f64| found.duration_s() <= most * (1.0 + 1e-9);
+        assert!(options.budget_s.is_none_or(within), "{what}");
+    }
+}

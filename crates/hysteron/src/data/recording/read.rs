@@ -4,6 +4,7 @@ use crate::data::recording::columns::Columns;
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{Note, NoteKind, Repair};
 use crate::data::recording::samples::Samples;
+use crate::data::roles::HeldBack;
 use crate::data::table::{Column, Memory, ReadOptions, TableReader};
 use crate::error::{Error, Place, Result};
 use crate::recording::{Origin, Quantity, Recording, Source};
@@ -31,6 +32,9 @@ impl Recording {
     /// its name or by the row of units, is converted to seconds.
     ///
     /// Timestamps and seconds since 1970 become seconds from the first row.
+    ///
+    /// **Logs** of `hysteron run` and `track`: rows whose reading the loop did not believe (missing, a
+    /// spike, stuck) are left out.
     ///
     /// The notes tell what was assumed and repaired, and where the time has gaps. A recording is
     /// one history: [`Recording::read_segments`] reads a table of several.
@@ -240,11 +244,12 @@ fn read_parts(
         _ => Quantity::named("load"),
     };
     let others = with_others.then(|| Others::new(&table, all));
+    let held = HeldBack::of(&mut table, columns.output);
     let mut samples = Samples::gather(
         &mut table,
         (&asked, time_at.is_some()),
         interpolated.as_deref(),
-        others,
+        (held.as_ref(), others),
     )?;
     let mut mended = samples.mend(&table, time_at, repair)?;
     let starts = match parted {

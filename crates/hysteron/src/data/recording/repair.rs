@@ -39,6 +39,8 @@ pub enum NoteKind {
     Ragged,
     /// No finite number in a column that was asked for: dropped.
     Dropped,
+    /// A reading that the loop of a log did not believe: left out.
+    Held,
     /// The same time and values as a row before: dropped.
     Copied,
     /// A time that fits none of the rows around, which fit each other: dropped.
@@ -62,6 +64,7 @@ impl NoteKind {
         match self {
             Self::Ragged => "with more or fewer cells than the header",
             Self::Dropped => "without a number",
+            Self::Held => "whose reading the loop did not believe",
             Self::Copied => "standing there before",
             Self::Alone => "with a time that fits none around",
             Self::Repeated => "at the time of the row before",
@@ -74,7 +77,7 @@ impl NoteKind {
 
     fn mended(self) -> &'static str {
         match self {
-            Self::Ragged | Self::Dropped | Self::Copied | Self::Alone => ": dropped",
+            Self::Ragged | Self::Dropped | Self::Held | Self::Copied | Self::Alone => ": dropped",
             Self::Repeated => ": kept",
             Self::Back | Self::LongGap => ": a segment begins, with a history of its own",
             Self::Interpolated => ": interpolated onto the times of the input",

@@ -5,6 +5,7 @@ use crate::data::recording::columns::TIME;
 use crate::data::recording::history::{History, starts};
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
+use crate::data::roles::HeldBack;
 use crate::data::table::{Column, TableReader};
 use crate::error::{Error, Place, Result};
 use crate::recording::gaps;
@@ -29,21 +30,28 @@ pub(super) struct Samples {
     ragged: Places,
     /// The rows without a number, and what is wrong with the first of them.
     missing: Places,
+    /// The rows of a log whose reading its loop did not believe.
+    held: Places,
     fault: Option<Error>,
 }
 
 impl Samples {
     /// Reads the columns `asked`: input, output, then time and load if any. `output`, if given,
-    /// replaces the column of the output. `others`, if given, collects whole rows.
+    /// replaces the column of the output. Rows that are `held` back are left out. `others`, if given,
+    /// collects whole rows.
     pub(super) fn gather(
         table: &mut TableReader,
         (asked, timed): (&[Column], bool),
         output: Option<&[f64]>,
-        others: Option<Others>,
+        (held, others): (Option<&HeldBack>, Option<Others>),
     ) -> Result<Self> {
         let mut samples = Self::none((asked.len(), timed), others);
         let mut outputs = output.map(|output| output.iter());
         while table.advance()? {
+            if held.is_some_and(|held| held.holds(table)) {
+                samples.held.push(table.row_place());
+                continue;
+            }
             samples.push(table, asked, outputs.as_mut().map(Iterator::next))?;
         }
         samples.ragged = table.ragged();
@@ -64,6 +72,7 @@ impl Samples {
             others,
             ragged: Places::default(),
             missing: Places::default(),
+            held: Places::default(),
             fault: None,
         }
     }
@@ -155,6 +164,7 @@ impl Samples {
         };
         note(NoteKind::Ragged, &self.ragged);
         note(NoteKind::Dropped, &self.missing);
+        note(NoteKind::Held, &self.held);
         let mut back = Vec::new();
         if self.timed {
             let History {

@@ -2,14 +2,17 @@
 //!
 //! Each column has evidence: words in its name (`words`), its unit (`units`), both together (`name`),
 //! and what its values do. A table of scores says how well a `quantity` fits each role.
-//! Where a second answer is nearly as good as the first, the roles are in doubt, and nothing is
+//! What this program wrote itself needs no evidence (`log`). Where a second answer is nearly as good as the first, the roles are in doubt, and nothing is
 //! guessed: a fit of the wrong columns looks like a fit.
 
+mod log;
 mod name;
 mod quantity;
 mod units;
 mod words;
 
+pub(super) use log::HeldBack;
+use log::Log;
 use name::Name;
 use quantity::Quantity;
 pub(super) use quantity::Series;
@@ -87,6 +90,11 @@ const NEAR: i32 = 5;
 /// The roles of columns, where those of input, output, time and load that are `known` stand at these
 /// places.
 pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Roles {
+    if let Some(log) = Log::of(columns.iter().map(|(name, ..)| *name))
+        && log.agrees(columns, known)
+    {
+        return of_log(log, columns, known[3]);
+    }
     let each = columns.iter();
     let each = each.map(|&(name, unit, series)| Candidate {
         name,
@@ -191,6 +199,27 @@ pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Ro
     });
     roles.doubts = doubts;
     roles
+}
+
+/// Those of a table that this program wrote. A column called `load` is one if it changes.
+fn of_log(log: &Log, columns: &Columns<'_>, load: Option<usize>) -> Roles {
+    let is_load = |(name, _, series): &&(&str, _, Series)| *name == "load" && series.changes;
+    let named = |name: &str| Some(name.to_owned());
+    let (input, output, time) = (log.input, log.output, log.time);
+    Roles {
+        input: named(input),
+        output: named(output),
+        time: named(time),
+        load: load
+            .and_then(|n| columns.get(n))
+            .or_else(|| columns.iter().find(is_load))
+            .and_then(|(name, ..)| named(name)),
+        reasons: vec![format!(
+            "{}: input `{input}`, output `{output}`, time `{time}`",
+            log.what
+        )],
+        doubts: Vec::new(),
+    }
 }
 
 /// The column that is the time: by its timestamps, by its name, or because it alone rises evenly.

@@ -1,0 +1,80 @@
+//! The columns of a recording: as they were named, or as the table tells them.
+
+use crate::args;
+use crate::terminal::{Result, say};
+use hysteron::{Columns, TableReader};
+use std::path::Path;
+
+/// Names of columns, some of which may not have been given.
+#[derive(Default)]
+pub(crate) struct Given<'a> {
+    pub(crate) input: Option<&'a str>,
+    pub(crate) output: Option<&'a str>,
+    pub(crate) time: Option<&'a str>,
+    pub(crate) load: Option<&'a str>,
+}
+
+/// Names of columns that are known.
+pub(crate) struct Named {
+    pub(crate) input: String,
+    pub(crate) output: String,
+    pub(crate) time: Option<String>,
+    load: Option<String>,
+}
+
+impl Named {
+    /// The columns as they were named. What was not is told by the table: a log of `run` or `track`,
+    /// or one whose columns leave no doubt. Its load is taken only if it is named: a model with a
+    /// load is another one.
+    pub(crate) fn of(path: &Path, given: &Given<'_>, repair: &args::Repair) -> Result<Self> {
+        let owned = |name: Option<&str>| name.map(str::to_owned);
+        if let (Some(input), Some(output)) = (given.input, given.output) {
+            return Ok(Self {
+                input: input.into(),
+                output: output.into(),
+                time: owned(given.time),
+                load: owned(given.load),
+            });
+        }
+        let refused = |why: &str| {
+            let path = path.display();
+            format!("{path}: {why}: name them with --input and --output, or see `hysteron start`")
+        };
+        if path == Path::new("-") {
+            return Err(refused("the columns of standard input are not looked for").into());
+        }
+        let mut table = TableReader::open_with(path, repair.max_memory())?;
+        let mut known = [None; 4];
+        let names = [given.input, given.output, given.time, given.load];
+        for (place, name) in known.iter_mut().zip(names) {
+            if let Some(name) = name {
+                *place = Some(table.column(name)?);
+            }
+        }
+        let roles = hysteron::preview_table_knowing(&mut table, known)?.roles;
+        let (Some(input), Some(output)) = (roles.input, roles.output) else {
+            return Err(
+                refused("the columns do not tell which is the input and the output").into(),
+            );
+        };
+        say(format_args!(
+            "{}: {}",
+            path.display(),
+            roles.reasons.join("; ")
+        ));
+        Ok(Self {
+            input,
+            output,
+            time: roles.time,
+            load: owned(given.load),
+        })
+    }
+
+    pub(crate) fn columns(&self) -> Columns<'_> {
+        Columns {
+            time: self.time.as_deref(),
+            load: self.load.as_deref(),
+            ..Columns::new(&self.input, &self.output)
+        }
+    }
+}
