@@ -43,7 +43,7 @@ fn list(scenes: &[Scene], of: impl Fn(&Scene) -> Vec<String>) {
     for scene in scenes {
         let lost = of(scene);
         if !lost.is_empty() {
-            println!("- `{}`: {}.", scene.name, lost.join("; "));
+            println!("- `{}`: {}.", scene.name, lost.join(";\n  "));
         }
     }
 }
