@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Time and memory of `hysteron fit` by rows and levels, and peers at the same optimum.
 
-    python docs/fit-command.py target/release/hysteron
+    python docs/fit-command.py target/release/hysteron [MOST [EARLIER]]
 
-Prints Markdown. Peers that are not installed are left out: SciPy, scikit-learn, OSQP, quadprog.
+MOST is the largest number of samples. EARLIER is a program of another version, whose default fits
+stand beside. Prints Markdown. Peers that are not installed are left out: SciPy, scikit-learn, OSQP, quadprog.
 Instructions are counted by callgrind, where Valgrind is installed.
 """
 import json
@@ -135,9 +136,7 @@ def growth(program, folder, most):
             continue
         data = recording(program, folder, levels, samples)
         own = [(name, ["--levels", str(levels), *options]) for name, options in every]
-        if levels == 20:
-            own.append(("all left to the data", []))
-        elif levels == 100 and samples == 10**4:
+        if levels == 100 and samples == 10**4:
             smooth = ["--smooth", "auto", "--spacing", "uniform", "--bootstrap", "0"]
             own.append(("smoothness left to the data", ["--levels", str(levels), *smooth]))
         for name, options in own:
@@ -147,6 +146,32 @@ def growth(program, folder, most):
                 wall, cpu, memory = found
                 figures = f"| {cpu:.2f} s | {wall:.2f} s | {memory:.0f} MiB |"
             print(f"| {levels} | {samples} | {name} {figures}", flush=True)
+
+
+def defaults(program, folder, most, earlier):
+    """Fits without any option, of this program and of an earlier one."""
+    print("\nAll left to the data: `hysteron fit` without an option, on the material of 20 levels. "
+          "*Left out* is\nthe error on branches left out, in percent of the range.\n")
+    print("| samples | version | CPU | time | memory | levels | left out |")
+    print("| ---: | --- | ---: | ---: | ---: | ---: | ---: |")
+    for samples in [10**3, 10**4, 10**5, 10**6, 10**7]:
+        if samples > most:
+            continue
+        data = recording(program, folder, 20, samples)
+        for version, own in [("before", earlier), ("now", program)]:
+            if own is None:
+                continue
+            out = os.path.join(folder, "x.json")
+            found = run(own, data, [], out)
+            if found is None:
+                print(f"| {samples} | {version} | over {PATIENCE} s | | | | |", flush=True)
+                continue
+            wall, cpu, memory = found
+            with open(out) as file:
+                model = json.load(file)
+            error = model["fit"]["validation"]["nrmse_percent"]
+            print(f"| {samples} | {version} | {cpu:.2f} s | {wall:.2f} s | {memory:.0f} MiB "
+                  f"| {model['plane']['levels']} | {error:.3f} % |", flush=True)
 
 
 def regressor(levels, samples):
@@ -255,8 +280,10 @@ def counts(program, folder):
 def main():
     program = os.path.abspath(sys.argv[1])
     most = int(float(sys.argv[2])) if len(sys.argv) > 2 else 10**7
+    earlier = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else None
     with tempfile.TemporaryDirectory() as folder:
         print(HEAD)
+        defaults(program, folder, most, earlier)
         growth(program, folder, most)
         print("\nThe same minimum by others, which take the dense regressor: weights from zero on, a "
               "free offset,\nno prior. Their time is that of the solver alone.")

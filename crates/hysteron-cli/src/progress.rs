@@ -1,6 +1,7 @@
 //! A progress bar on standard error, where that is a terminal.
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::path::Path;
 
 /// A bar over the bytes of a file; none where its size is not known.
@@ -24,11 +25,19 @@ pub(crate) fn share() -> ProgressBar {
     bar
 }
 
-/// A line that names what is being done and how far it is.
+/// A line that names what is being done, how far it is, and the time that is left of that, as far as
+/// the share tells.
 pub(crate) fn stages() -> ProgressBar {
     let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}") {
-        bar.set_style(style);
+    let template = "{bar:40} {percent:>3} %  {msg}{left}  {elapsed}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        let left = |state: &ProgressState, text: &mut dyn Write| {
+            if state.pos() > 0 {
+                // A line that cannot be written is not shown, as everywhere in a bar.
+                _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
+            }
+        };
+        bar.set_style(style.with_key("left", left));
     }
     bar
 }
@@ -37,6 +46,9 @@ pub(crate) fn stages() -> ProgressBar {
 pub(crate) fn stage(bar: &ProgressBar, stage: &'static str, done: f64) {
     if bar.message() != stage {
         bar.set_message(stage);
+        // Each stage is estimated by itself.
+        bar.set_position(0);
+        bar.reset_eta();
     }
     match done.is_nan() {
         true => bar.tick(),

@@ -3,6 +3,7 @@
 use crate::model::Plane;
 use crate::recording::Recording;
 use hysteron_core::{Axis, Direction, Loaded};
+use std::borrow::Cow;
 
 /// The recordings with another input.
 pub(super) fn with_inputs(
@@ -27,8 +28,12 @@ pub(super) fn on_grid<'a>(spacing: &'a [f64], plane: &'a Plane) -> impl Fn(f64) 
 
 /// Keeps of each run of `stride` samples the first one and those with extreme inputs. Without the
 /// extremes the turning points would change, and with them the memory of the operators.
-pub(super) fn thin(recording: Recording, stride: usize) -> Recording {
-    let input = &recording.input;
+pub(super) fn thin(recording: &Recording, stride: usize) -> Recording {
+    at(recording, &kept(&recording.input, stride))
+}
+
+/// The samples that [`thin`] keeps.
+fn kept(input: &[f64], stride: usize) -> Vec<usize> {
     let starts = (0..input.len()).step_by(stride);
     let mut kept: Vec<usize> = starts
         .flat_map(|start| {
@@ -40,12 +45,66 @@ pub(super) fn thin(recording: Recording, stride: usize) -> Recording {
         .collect();
     kept.sort_unstable();
     kept.dedup();
-    let every = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
-    Recording {
-        time: recording.time.as_ref().map(every),
-        output: every(&recording.output),
-        load: recording.load.as_ref().map(every),
-        input: every(&recording.input),
-        ..recording
+    kept
+}
+
+/// Some samples of a recording.
+fn at(recording: &Recording, kept: &[usize]) -> Recording {
+    recording.picked(|series| kept.iter().map(|n| series[*n]).collect())
+}
+
+/// Choices see about so many samples of all recordings, or twice as many: the extremes. More of them
+/// tell candidates apart no better than their noise, and a pass over them takes longer.
+const ENOUGH: usize = 50_000;
+
+/// The recordings with as many samples as choices need: the same of each as [`thin`] keeps of the
+/// recording in its place in `like`.
+pub(super) fn few<'a>(recordings: &'a [Recording], like: &[Recording]) -> Cow<'a, [Recording]> {
+    let samples: usize = like.iter().map(Recording::len).sum();
+    let stride = samples.div_ceil(ENOUGH);
+    if stride <= 1 {
+        return Cow::Borrowed(recordings);
+    }
+    let own = recordings.iter().zip(like);
+    own.map(|(own, like)| at(own, &kept(&like.input, stride)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::series::range;
+
+    #[test]
+    fn choices_see_the_extremes_of_long_recordings_and_all_of_short_ones() {
+        let waves = |n: usize| (n as f64 * 0.37).sin() * (n as f64 * 0.001).cos();
+        let of = |samples: usize| {
+            let input: Vec<f64> = (0..samples).map(waves).collect();
+            let output = (0..samples).map(|n| n as f64).collect();
+            Recording::new(input, output).unwrap()
+        };
+        let short = [of(ENOUGH)];
+        assert!(matches!(few(&short, &short), Cow::Borrowed(_)));
+        let long = [of(4 * ENOUGH), of(3 * ENOUGH)];
+        let found = few(&long, &long);
+        let samples: usize = found.iter().map(Recording::len).sum();
+        assert!((ENOUGH..=3 * ENOUGH).contains(&samples), "{samples}");
+        for (few, all) in found.iter().zip(&long) {
+            assert_eq!(range(&few.input), range(&all.input));
+            assert_eq!(few.output[0], 0.0);
+            // The output is the number of the sample: inputs and outputs stay together.
+            let pairs = few.input.iter().zip(&few.output);
+            assert!(pairs.into_iter().all(|(x, n)| *x == waves(*n as usize)));
+        }
+        // What stands beside the operators keeps the same samples.
+        let other = long.clone().map(|own| Recording {
+            input: own.output.clone(),
+            ..own
+        });
+        for (few, other) in found.iter().zip(few(&other, &long).iter()) {
+            assert_eq!(few.output, other.output);
+        }
     }
 }

@@ -2,8 +2,10 @@
 //! model.
 
 use crate::error::Result;
+use crate::identify::changed::few;
 use crate::identify::neighbours::Neighbours;
 use crate::identify::options::{FitOptions, LoadLaw, SOME_SMOOTHNESS};
+use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
 use crate::model::Outlier;
 use crate::progress::Progress;
@@ -89,11 +91,25 @@ fn judged(
     options: &FitOptions,
 ) -> Result<Vec<Outlier>> {
     let mut residuals = {
-        let mut problem = Problem::new(mended, options)?;
+        let few = few(mended, mended);
+        let mut problem = Problem::new(&few, options)?;
         let fitted = problem.solve(None, Progress::NONE)?;
-        let mut residual = fitted.solution.residual;
-        residual.iter_mut().for_each(|r| *r *= fitted.sign.factor());
-        residual
+        let sign = fitted.sign.factor();
+        match few {
+            Cow::Borrowed(_) => {
+                let mut residual = fitted.solution.residual;
+                residual.iter_mut().for_each(|r| *r *= sign);
+                residual
+            }
+            Cow::Owned(_) => {
+                let all = Experiment::new(mended, options)?;
+                let mut left = problem.predict_over(&all, &fitted.solution)?;
+                let offset = options.offset.unwrap_or(0.0);
+                let pairs = left.iter_mut().zip(all.output.iter());
+                pairs.for_each(|(h, y)| *h = y - offset - sign * *h);
+                left
+            }
+        }
     };
     let mut found = Vec::new();
     let mut end = 0;

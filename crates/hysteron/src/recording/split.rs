@@ -186,7 +186,8 @@ impl Recording {
         self.picked(|series| series[samples.clone()].to_vec())
     }
 
-    fn picked(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+    /// Every series as it is picked.
+    pub(crate) fn picked(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Self {
             time: self.time.as_deref().map(&pick),
             input: pick(&self.input),

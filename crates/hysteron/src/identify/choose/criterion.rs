@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::options::Prior;
+use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::sums::{Reduced, Sums, centred};
 use crate::identify::weights::units::Folds;
@@ -45,8 +46,7 @@ impl<'a> Level<'a> {
             let target = centred(&problem, sign);
             Sums::of_groups(&problem, target, |n| folds.fold(n), folds.count, unnamed)?
         };
-        let mut all = own[0].clone();
-        own[1..].iter().for_each(|fold| all.add(fold));
+        let all = Sums::total(&own).ok_or_else(not_definite)?;
         let folds = own.into_iter().map(|own| {
             let rest = all.without(&own).reduced()?;
             Ok(Fold { own, rest })
@@ -73,18 +73,30 @@ impl<'a> Level<'a> {
     /// Root mean squared error over all samples, each from a fit without its fold.
     pub(super) fn left_out_rmse(&self, smooth: Smooth, starts: &mut Starts) -> Result<f64> {
         let solver = self.problem.options.solver;
+        // The folds have nearly the same weights above zero as all samples together. A solution
+        // with smoothness is no start for one without, which has far fewer.
+        let far = smooth.is_none() || starts.iter().flatten().all(|x| *x == 0.0);
+        let near = match far && solver == Solver::Nnls {
+            true => {
+                let penalised = self.whole.penalised(self.prior(smooth), &self.problem);
+                let zeros = vec![0.0; self.problem.regressor.columns().len()];
+                let whole = &self.whole;
+                Some(whole.solve(&penalised, solver, &zeros, Progress::NONE)?.x)
+            }
+            false => None,
+        };
         let before = &*starts;
         let solved = parallel::map(self.folds.len(), |n| {
             self.progress.tell("choice of levels", f64::NAN)?;
             let Fold { own, rest } = &self.folds[n];
             let penalised = rest.penalised(self.prior(smooth), &self.problem);
-            let at = rest.solve(&penalised, solver, &before[n], Progress::NONE)?;
+            let start = near.as_ref().unwrap_or(&before[n]);
+            let at = rest.solve(&penalised, solver, start, Progress::NONE)?;
             Ok((own.error(&at), at.x))
         })?;
         let mut squares = 0.0;
         for (start, (error, x)) in starts.iter_mut().zip(solved) {
             squares += error;
-            // Without smoothness most weights are zero. Then zero is a better starting point.
             if !smooth.is_none() {
                 *start = x;
             }

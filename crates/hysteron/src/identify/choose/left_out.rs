@@ -84,7 +84,7 @@ pub fn left_out(
                 recordings.into(),
                 &options,
                 candidates,
-                Some(&kept),
+                (Some(&kept), None),
                 progress,
             )?
             .options;

@@ -17,7 +17,7 @@ pub(super) use seen::Seen;
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
-use crate::model::Validation;
+use crate::model::{Smooth, Validation};
 use crate::progress::Progress;
 use validate::{Candidates, validated};
 
@@ -29,11 +29,12 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// The options with levels and smoothness.
+    /// The options with levels and smoothness. The search for the smoothness begins `near` one.
     pub(super) fn choose(
         self,
         seen: Seen<'_>,
         options: &FitOptions,
+        near: Option<Smooth>,
         progress: Progress<'_>,
     ) -> Result<(FitOptions, Option<Validation>)> {
         if !self.levels && !self.smooth {
@@ -43,7 +44,7 @@ impl Open {
             (!self.levels).then_some(options.levels),
             (!self.smooth).then_some(options.smooth),
         );
-        let (options, found) = validated(seen, options, &candidates, progress)?;
+        let (options, found) = validated(seen, options, &candidates, near, progress)?;
         Ok((options, Some(found)))
     }
 }
@@ -55,5 +56,5 @@ pub(super) fn tested(
     progress: Progress<'_>,
 ) -> Result<Validation> {
     let candidates = Candidates::new(Some(options.levels), Some(options.smooth));
-    Ok(validated(seen, options, &candidates, progress)?.1)
+    Ok(validated(seen, options, &candidates, None, progress)?.1)
 }

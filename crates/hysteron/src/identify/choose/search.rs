@@ -44,12 +44,20 @@ pub(super) fn smooth_at(place: Point) -> Smooth {
     }
 }
 
+/// The place of strengths on the grid.
+pub(super) fn place_of(smooth: Smooth) -> Option<Point> {
+    let all = (0..=ALONG.count()).flat_map(|a| (0..=ACROSS.count()).map(move |c| (a, c)));
+    all.into_iter().find(|place| smooth_at(*place) == smooth)
+}
+
 /// Walks to a place where no neighbour has a smaller `value`, from the best of `from` (a coarse
-/// grid, if that is empty). `steps` lead to the neighbours. Returns the values of all places it
-/// looked at.
+/// grid, if that is empty). `steps` lead to the neighbours. Whether the walk goes on from one value
+/// to the next is said by `goes_on`, for the first with infinity as the one before. Returns the
+/// values of all places it looked at.
 pub(super) fn walk(
     from: &[Point],
     steps: &[Step],
+    goes_on: impl Fn(f64, f64) -> bool,
     mut value: impl FnMut(Point) -> Result<f64>,
 ) -> Result<BTreeMap<Point, f64>> {
     let most = |decades: std::ops::RangeInclusive<i32>| decades.count();
@@ -62,10 +70,15 @@ pub(super) fn walk(
     for &place in if from.is_empty() { &coarse[..] } else { from } {
         known.insert(place, value(place)?);
     }
+    let mut before = f64::INFINITY;
     loop {
         let Some(best) = best(&known) else {
             return Ok(known);
         };
+        if !goes_on(before, known[&best]) {
+            return Ok(known);
+        }
+        before = known[&best];
         let near = |&(a, c): &Step| {
             let a = best.0.checked_add_signed(a)?;
             let c = best.1.checked_add_signed(c)?;
@@ -102,7 +115,7 @@ mod tests {
             };
             for from in [vec![], vec![(0, 0)], vec![(8, 6), (1, 1)]] {
                 for steps in [&AROUND[..], &ALONG_AXES] {
-                    let found = best(&walk(&from, steps, bowl)?);
+                    let found = best(&walk(&from, steps, |_, _| true, bowl)?);
                     assert_eq!(found, Some(bottom), "from {from:?}");
                 }
             }
@@ -111,8 +124,22 @@ mod tests {
     }
 
     #[test]
+    fn the_walk_ends_where_it_is_told_to() -> Result<()> {
+        let slope = |(a, c): Point| Ok(100.0 - (a + c) as f64);
+        let known = walk(&[(0, 0)], &ALONG_AXES, |_, value| value > 98.0, slope)?;
+        assert_eq!(best(&known), Some((0, 2)));
+        let known = walk(&[(0, 0)], &ALONG_AXES, |_, _| false, slope)?;
+        assert_eq!(known.len(), 1);
+        Ok(())
+    }
+
+    #[test]
     fn places_are_decades() {
         assert_eq!(smooth_at((0, 0)), Smooth::NONE);
+        for place in [(0, 0), (1, 6), (8, 0), (3, 4)] {
+            assert_eq!(place_of(smooth_at(place)), Some(place));
+        }
+        assert_eq!(place_of(Smooth::from(3e-7)), None);
         let found = smooth_at((1, 6));
         // Powers of ten, rounded.
         assert!((found.along * 1e10 - 1.0).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! Chooses the state of the operators before the first sample.
 
 use crate::error::Result;
-use crate::identify::changed::thin;
+use crate::identify::changed::{few, thin};
 use crate::identify::choose::validate::{Candidates, Choice, choose};
 use crate::identify::options::{FitOptions, SOME_SMOOTHNESS};
 use crate::identify::rest::{polished, search};
@@ -34,6 +34,7 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Fit
         start: Start::Off,
         ..options.clone()
     };
+    let recordings = &few(recordings, recordings)[..];
     let problem = Problem::new(recordings, &off)?;
     let operators = problem.regressor.plane().operators() as f64;
     if problem.regressor.open_at_start as f64 <= MANY_OPEN * operators {
@@ -46,7 +47,7 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Fit
             recordings.into(),
             options,
             &candidates,
-            None,
+            (None, None),
             Progress::NONE,
         )
     };
@@ -71,7 +72,7 @@ pub(crate) fn at_rest(recordings: &[Recording], options: &FitOptions) -> Result<
     let stride = samples.div_ceil(SEARCHED.0);
     let recordings: Vec<Recording> = recordings
         .iter()
-        .map(|recording| thin(recording.clone(), stride))
+        .map(|recording| thin(recording, stride))
         .collect();
     let ranges = recordings.iter().map(|recording| range(&recording.input));
     let all = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));

@@ -7,7 +7,9 @@
 use crate::error::Result;
 use crate::identify::choose::criterion::Level;
 use crate::identify::choose::rivals;
-use crate::identify::choose::search::{ALONG_AXES, AROUND, Point, Step, best, smooth_at, walk};
+use crate::identify::choose::search::{
+    ALONG_AXES, AROUND, Point, Step, best, place_of, smooth_at, walk,
+};
 use crate::identify::choose::seen::Seen;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
@@ -39,6 +41,19 @@ const MOST_COLUMNS: usize = 900;
 /// The strengths do not depend on the number of levels, so the best is not far from there.
 const COARSE: usize = 40;
 
+/// From so many levels on a candidate takes long. The smoothness that was best with fewer levels
+/// is rated first, because the strengths do not depend on the number of levels. A search then goes
+/// along the axes, unless that first one is worse than the best of fewer levels by more than one
+/// part in the number of levels: a search seldom makes up for more.
+const FINE: usize = 20;
+
+/// With more levels than this, that first one is the only candidate: a search has hardly anything
+/// left to gain, and takes longer than all before.
+const SEARCHED: usize = 28;
+
+/// A search goes on while it gains this share. On a plateau any place will do.
+const GAIN: f64 = 1e-3;
+
 /// The candidates to choose from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidates {
@@ -67,8 +82,10 @@ impl Candidates {
 ///
 /// With six branches or more the criterion is the error on branches left out. Otherwise it is the
 /// evidence, see [`Criterion`]. At least 28 levels are tried, and more until two numbers in a row
-/// have not been better by 1 % (by 1 in the logarithm of the evidence). If the starts of several
-/// recordings are unknown, only two patterns of starts are tried: all off and all on.
+/// have not been better by 1 % (by 1 in the logarithm of the evidence). From 20 levels on, the
+/// smoothness that was best before is rated first; others follow where they can win, up to 28
+/// levels. If the starts of several recordings are unknown, only two patterns of starts are tried:
+/// all off and all on.
 ///
 /// For one given number of levels above 40, with more than 900 columns, the search for the
 /// smoothness begins with 40 levels, where a candidate takes little time.
@@ -81,14 +98,16 @@ pub fn cross_validate(
     candidates: &Candidates,
     progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
-    validated(recordings.into(), options, candidates, progress)
+    validated(recordings.into(), options, candidates, None, progress)
 }
 
-/// As [`cross_validate`], for recordings that stages have changed.
+/// As [`cross_validate`], for recordings that stages have changed. The search for the smoothness
+/// begins `near` one that was good in a similar problem.
 pub(super) fn validated(
     seen: Seen<'_>,
     options: &FitOptions,
     candidates: &Candidates,
+    near: Option<Smooth>,
     progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
     let Choice {
@@ -97,7 +116,7 @@ pub(super) fn validated(
         criterion,
         chosen,
         scores,
-    } = choose(seen, options, candidates, None, progress)?;
+    } = choose(seen, options, candidates, (None, near), progress)?;
     let problem = Problem::new(seen.operators, &options)?;
     let (low, high) = range(&problem.experiment.output);
     let rivals = rivals::left_out(seen.measured, &folds)?;
@@ -143,7 +162,7 @@ pub(super) fn choose(
     seen: Seen<'_>,
     options: &FitOptions,
     candidates: &Candidates,
-    kept: Option<&[f64]>,
+    (kept, near): (Option<&[f64]>, Option<Smooth>),
     progress: Progress<'_>,
 ) -> Result<Choice> {
     let mut options = options.clone();
@@ -171,28 +190,27 @@ pub(super) fn choose(
     let mut search = Search {
         criterion,
         smooth: candidates.smooth,
-        from: Vec::new(),
-        near: &AROUND,
+        from: near.and_then(place_of).into_iter().collect(),
     };
     let is_large = |problem: &Problem<'_>| problem.regressor.columns().len() > MOST_COLUMNS;
-    if candidates.smooth.is_none() && first > COARSE && is_large(&problem) {
+    let open = candidates.smooth.is_none() && search.from.is_empty();
+    if open && first > COARSE && is_large(&problem) {
         let level = Level::new(at(COARSE, &options)?, sign, &folds, progress)?;
-        search.rate(&level, COARSE)?;
-        search.near = &ALONG_AXES;
+        search.rate(&level, COARSE, f64::INFINITY)?;
     }
     let mut best_value = f64::INFINITY;
     let mut no_better = 0;
+    // A candidate takes time about as the cube of its levels.
+    let time = |levels: &[usize]| levels.iter().map(|k| (*k as f64).powi(3)).sum::<f64>();
     for (n, &levels) in candidates.levels.iter().enumerate() {
-        progress.tell(
-            "choice of levels",
-            n as f64 / candidates.levels.len() as f64,
-        )?;
+        let done = time(&candidates.levels[..n]) / time(&candidates.levels);
+        progress.tell("choice of levels", done)?;
         let problem = at(levels, &options)?;
         if n > 0 && is_large(&problem) {
             break;
         }
         let level = Level::new(problem, sign, &folds, progress)?;
-        let found = search.rate(&level, levels)?;
+        let found = search.rate(&level, levels, best_value)?;
         let values = found.iter().map(|score| criterion.value(score));
         let value = values.fold(f64::INFINITY, f64::min);
         scores.extend(found);
@@ -228,12 +246,11 @@ struct Search {
     smooth: Option<Smooth>,
     /// Where the last walk ended.
     from: Vec<Point>,
-    near: &'static [Step],
 }
 
 impl Search {
-    /// The candidates at one number of levels.
-    fn rate(&mut self, level: &Level<'_>, levels: usize) -> Result<Vec<Score>> {
+    /// The candidates at one number of levels, where the best value of fewer levels is known.
+    fn rate(&mut self, level: &Level<'_>, levels: usize, least: f64) -> Result<Vec<Score>> {
         let mut starts = level.starts();
         let mut scores = Vec::new();
         let mut rate = |smooth: Smooth| -> Result<f64> {
@@ -258,7 +275,20 @@ impl Search {
         match self.smooth {
             Some(smooth) => _ = rate(smooth)?,
             None => {
-                let known = walk(&self.from, self.near, |place| rate(smooth_at(place)))?;
+                let criterion = self.criterion;
+                let steps: &[Step] = match self.from.is_empty() || levels < FINE {
+                    true => &AROUND,
+                    false => &ALONG_AXES,
+                };
+                let goes_on = |before: f64, value: f64| match before.is_infinite() {
+                    true if levels < FINE || least.is_infinite() => value.is_finite(),
+                    true => {
+                        let reach = 1.0 / levels as f64;
+                        levels <= SEARCHED && criterion.is_worth(value, least, -reach)
+                    }
+                    false => criterion.is_worth(value, before, GAIN),
+                };
+                let known = walk(&self.from, steps, goes_on, |place| rate(smooth_at(place)))?;
                 self.from = best(&known).into_iter().collect();
             }
         }

@@ -116,11 +116,19 @@ pub(crate) fn left_out_errors(
     let target = centred(problem, fitted.sign);
     let report = |_: &'static str, _: f64| progress.tell("confidence", 0.0);
     let progress = Progress::new(&report);
-    // All samples are one group. Its sums less those of a group are the sums of the others.
-    let all = Sums::of_groups(problem, &target, |_| Some(0), 1, progress)?;
+    // The sums over all samples less those of a group are the sums of the others. Where the groups
+    // take several passes, all samples are one group of a pass before.
+    let passes = Sums::passes(problem, folds.count);
+    let mut all = match passes.len() {
+        0 | 1 => Vec::new(),
+        _ => Sums::of_groups(problem, &target, |_| Some(0), 1, progress)?,
+    };
     let mut solved: Vec<Coefficients> = Vec::new();
-    for groups in Sums::passes(problem, folds.count) {
+    for groups in passes {
         let own = Sums::of_some(problem, &target, |n| folds.fold(n), groups, progress)?;
+        if all.is_empty() {
+            all.extend(Sums::total(&own));
+        }
         solved.extend(parallel::map(own.len(), |n| {
             progress.tell("confidence", 0.0)?;
             let rest = all[0].without(&own[n]).reduced()?;

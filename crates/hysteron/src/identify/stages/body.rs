@@ -123,7 +123,7 @@ impl<'a> Search<'a> {
             tau_cooling,
             ..FirstOrder::default()
         };
-        let thinned = |r: &Recording| Ok(thin(body.behind(r)?, self.stride));
+        let thinned = |r: &Recording| Ok(thin(&body.behind(r)?, self.stride));
         let heated: Result<Vec<Recording>> = self.recordings.iter().map(thinned).collect();
         match fit_weights(&heated?, &self.options, Progress::NONE) {
             Ok(model) => Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse)),

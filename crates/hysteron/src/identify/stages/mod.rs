@@ -19,6 +19,7 @@ pub use spacing::SpacingShape;
 pub(crate) use spacing::shape_of as spacing_shape;
 
 use crate::error::Result;
+use crate::identify::changed::few;
 use crate::identify::choose::{Open, Seen, tested};
 use crate::identify::fixed::fit_weights_without;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
@@ -87,12 +88,14 @@ pub(crate) fn fit(
         seen = Cow::Owned(swinging.recordings);
         ring = Some(swinging.constants);
     }
+    let (few_seen, few_measured) = (few(&seen, &seen), few(recordings, &seen));
     let unspaced = Seen {
-        operators: &seen,
-        even: &seen,
-        measured: recordings,
+        operators: &few_seen,
+        even: &few_seen,
+        measured: &few_measured,
     };
-    let (mut options, mut validation) = asked.open.choose(unspaced, &options, progress)?;
+    let (mut options, mut validation) = asked.open.choose(unspaced, &options, None, progress)?;
+    let mut bent = None;
     if options.spacing == Spacing::Auto {
         let chosen = (asked.open, &validation);
         let spaced = spacing::find(unspaced, &options, chosen, asked.shape, progress)?;
@@ -104,18 +107,17 @@ pub(crate) fn fit(
                 };
                 spaced.validation = Some(tested(bent, &spaced.options, progress)?);
             }
+            bent = Some(spaced.behind(&seen));
             found.spacing = spaced.corners;
-            seen = Cow::Owned(spaced.recordings);
             (options, validation) = (spaced.options, spaced.validation);
         }
     }
     if asked.tested && validation.is_none() {
-        let even = Seen {
-            operators: &seen,
-            even: &seen,
-            measured: recordings,
-        };
-        validation = Some(tested(even, &options, progress)?);
+        validation = Some(tested(unspaced, &options, progress)?);
+    }
+    drop((few_seen, few_measured));
+    if let Some(bent) = bent {
+        seen = Cow::Owned(bent);
     }
     if asked.auto_bootstrap {
         options.bootstrap = FitOptions::usual_bootstrap(options.levels);

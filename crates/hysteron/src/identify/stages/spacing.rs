@@ -3,10 +3,12 @@
 use crate::error::Result;
 use crate::identify::changed::{on_grid, with_inputs};
 use crate::identify::choose::{Open, Seen};
-use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::plane_of_all;
+use crate::identify::weights::problem::Problem;
+use crate::identify::weights::sums::least_squares;
 use crate::model::{Model, Plane, Validation};
+use crate::parallel;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use serde::Serialize;
@@ -61,11 +63,19 @@ pub(crate) fn shape_of(model: &Model, recording: &Recording) -> Option<SpacingSh
 pub(super) struct Spaced {
     /// The `K + 1` corners of the grid, ascending, from the bottom of the plane to its top.
     pub(super) corners: Vec<f64>,
-    /// The recordings on the uniform grid of the plane.
+    plane: Plane,
+    /// The recordings of the choice on the uniform grid of the plane.
     pub(super) recordings: Vec<Recording>,
     /// The options, with the smoothness that is best with these levels.
     pub(super) options: FitOptions,
     pub(super) validation: Option<Validation>,
+}
+
+impl Spaced {
+    /// Recordings on the uniform grid of the plane.
+    pub(super) fn behind(&self, recordings: &[Recording]) -> Vec<Recording> {
+        behind(&self.corners, &self.plane, recordings)
+    }
 }
 
 /// Finds the corners that fit the recordings best. `None` if equal distances fit as well. Where
@@ -103,7 +113,9 @@ pub(super) fn find(
             operators: &recordings,
             ..seen
         };
-        let (again, found) = open.choose(bent, &options, progress)?;
+        // What is best with equal distances is good here too.
+        let near = Some(options.smooth);
+        let (again, found) = open.choose(bent, &options, near, progress)?;
         if let Some(found) = &found
             && !found
                 .criterion
@@ -116,6 +128,7 @@ pub(super) fn find(
     }
     Ok(Some(Spaced {
         corners,
+        plane,
         recordings,
         options,
         validation,
@@ -128,24 +141,27 @@ fn best_fit(
     options: &FitOptions,
     progress: Progress<'_>,
 ) -> Result<Vec<f64>> {
-    let options = FitOptions {
-        bootstrap: 0,
-        ..options.clone()
+    let sign = match options.sign {
+        Some(sign) => sign,
+        None => {
+            let mut problem = Problem::new(recordings, options)?;
+            problem.solve(None, Progress::NONE)?.sign
+        }
     };
-    let rated = |corners: &[f64]| {
+    let rated = |corners: &[f64], start: &[f64]| {
         progress.tell("spacing of the levels", f64::NAN)?;
         let seen = behind(corners, plane, recordings);
-        let options = resting(corners, plane, &options);
-        let model = fit_weights(&seen, &options, Progress::NONE)?;
-        Ok::<_, crate::error::Error>(model.fit.map_or(f64::INFINITY, |fit| fit.rmse))
+        let options = resting(corners, plane, options);
+        least_squares(&Problem::new(&seen, &options)?, sign, start)
     };
-    let mut best = (Vec::new(), (1.0 - WORTH) * rated(&[])?);
+    let (even, weights) = rated(&[], &[])?;
     let path = path(recordings, plane);
-    for shape in shapes() {
-        let corners = corners(&path, plane, shape);
-        let error = rated(&corners)?;
-        if error < best.1 {
-            best = (corners, error);
+    let all: Vec<Vec<f64>> = shapes().map(|shape| corners(&path, plane, shape)).collect();
+    let squares = parallel::map(all.len(), |n| Ok(rated(&all[n], &weights)?.0))?;
+    let mut best = (Vec::new(), (1.0 - WORTH).powi(2) * even);
+    for (corners, squares) in all.into_iter().zip(squares) {
+        if squares < best.1 {
+            best = (corners, squares);
         }
     }
     Ok(best.0)

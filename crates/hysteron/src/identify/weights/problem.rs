@@ -80,8 +80,17 @@ impl<'a> Problem<'a> {
 
     /// `A x` plus the free columns at every sample, whether it was kept or not.
     pub(crate) fn predict(&self, solution: &Solution) -> Result<Vec<f64>> {
-        let mut output = self.regressor.forward(&self.experiment, &solution.x)?;
-        for (part, value) in self.experiment.offsets.iter().zip(&solution.free) {
+        self.predict_over(&self.experiment, solution)
+    }
+
+    /// As [`Problem::predict`], over the same recordings with more samples.
+    pub(crate) fn predict_over(
+        &self,
+        experiment: &Experiment<'_>,
+        solution: &Solution,
+    ) -> Result<Vec<f64>> {
+        let mut output = self.regressor.forward(experiment, &solution.x)?;
+        for (part, value) in experiment.offsets.iter().zip(&solution.free) {
             output
                 .iter_mut()
                 .zip(part.iter())

@@ -124,9 +124,12 @@ impl Sums {
         Ok(all)
     }
 
-    /// The sums of both groups.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.combine(other, 1.0);
+    /// The sums of all the groups together; `None` without a group.
+    pub(crate) fn total(groups: &[Self]) -> Option<Self> {
+        let (first, others) = groups.split_first()?;
+        let mut total = first.clone();
+        others.iter().for_each(|own| total.combine(own, 1.0));
+        Some(total)
     }
 
     /// The sums without those of a group that is part of this one.
@@ -296,6 +299,26 @@ impl Reduced {
     }
 }
 
+/// The squared error of the best weights over all samples, and these weights, searched from `start`
+/// where it has as many.
+pub(crate) fn least_squares(
+    problem: &Problem,
+    sign: Sign,
+    start: &[f64],
+) -> Result<(f64, Vec<f64>)> {
+    let target = centred(problem, sign);
+    let all = Sums::of_some(problem, target, |_| Some(0), 0..1, Progress::NONE)?;
+    let [all] = <[Sums; 1]>::try_from(all).map_err(|_| not_definite())?;
+    let reduced = all.clone().reduced()?;
+    let penalised = reduced.penalised(problem.options.prior(), problem);
+    let mut from = vec![0.0; problem.regressor.columns().len()];
+    if start.len() == from.len() {
+        from.copy_from_slice(start);
+    }
+    let at = reduced.solve(&penalised, problem.options.solver, &from, Progress::NONE)?;
+    Ok((all.error(&at), at.x))
+}
+
 /// The target of a problem without its mean, at each sample.
 pub(crate) fn centred(problem: &Problem, sign: Sign) -> impl Fn(usize) -> f64 + Sync {
     let samples = problem.experiment.output.len();
@@ -304,4 +327,56 @@ pub(crate) fn centred(problem: &Problem, sign: Sign) -> impl Fn(usize) -> f64 + 
         None => problem.targets(sign).sum::<f64>() / samples as f64,
     };
     move |n| problem.target(sign, n) - mean
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::identify::options::FitOptions;
+    use crate::recording::Recording;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// The best weights from sums, from any start, against the fit whose residual is a run of the
+    /// model: short walks, which excite few operators, and starts that are wrong everywhere.
+    #[test]
+    fn sums_find_the_error_of_the_fit() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for round in 0..30 {
+            let samples = rng.random_range(4..800);
+            let input: Vec<f64> = match round % 3 {
+                0 => (0..samples).map(|n| f64::from(n % 2)).collect(),
+                _ => (0..samples).map(|_| rng.random_range(0.0..1.0)).collect(),
+            };
+            let noisy = |x: &f64| 5.0 - x * x + 0.1 * rng.random_range(-1.0..1.0);
+            let output = input.iter().map(noisy).collect();
+            let recordings = [Recording::new(input, output).unwrap()];
+            let smooth = [0.0, 1e-9, 1e-6, 1e-3][round % 4];
+            let options = FitOptions {
+                levels: [2, 9, 26][round % 3],
+                smooth: smooth.into(),
+                ..FitOptions::plain()
+            };
+            let mut problem = Problem::new(&recordings, &options).unwrap();
+            let fitted = problem.solve(None, Progress::NONE).unwrap();
+            let residual = &fitted.solution.residual;
+            let plain: f64 = residual.iter().map(|r| r * r).sum();
+            let total: f64 = problem.targets(fitted.sign).map(|y| y * y).sum();
+            let count = problem.regressor.columns().len();
+            let wrong: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0..2.0)).collect();
+            for start in [&[][..], &wrong, &fitted.solution.x] {
+                let (squares, x) = least_squares(&problem, fitted.sign, start).unwrap();
+                assert!(x.iter().all(|x| *x >= 0.0));
+                // The ridge that makes the matrix definite pulls a little, and squares that are
+                // subtracted from each other leave their rounding.
+                let allowed = 1e-5 * plain + 1e-11 * total;
+                assert!(
+                    (squares - plain).abs() < allowed,
+                    "round {round}: {squares} for {plain}"
+                );
+            }
+        }
+    }
 }

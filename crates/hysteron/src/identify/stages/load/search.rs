@@ -260,7 +260,7 @@ impl Search<'_> {
     pub(super) fn normalised(&self) -> Vec<Recording> {
         let stride = self.samples.input.len().div_ceil(SAMPLES);
         let scaled = self.scaled().into_iter();
-        scaled.map(|recording| thin(recording, stride)).collect()
+        scaled.map(|recording| thin(&recording, stride)).collect()
     }
 
     /// The recordings with each load's loop scaled to its own height. Where the load changes all the
