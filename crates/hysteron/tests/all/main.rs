@@ -5,6 +5,7 @@
 mod common;
 #[path = "../faulty/mod.rs"]
 mod faulty;
+mod filtered_feedback;
 
 mod adaptation;
 mod adaptive_stages;

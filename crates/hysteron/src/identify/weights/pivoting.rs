@@ -60,7 +60,7 @@ pub(crate) fn minimum_by(
 ) -> (Vec<f64>, bool) {
     let count = b.len();
     let mut above: Vec<bool> = x.iter().map(|x| *x > 0.0).collect();
-    let mut best = (usize::MAX, x.to_vec());
+    let mut best = (usize::MAX, x.iter().map(|x| x.max(0.0)).collect());
     let mut patience = PATIENCE;
     for _ in 0..MOST {
         let members: Vec<usize> = (0..count).filter(|n| above[*n]).collect();
