@@ -93,6 +93,7 @@ pub(crate) fn run(args: &args::Run) -> Result<()> {
 fn plain(error: Error) -> Box<dyn std::error::Error> {
     match error {
         Error::Hysteron(error) => error.into(),
+        Error::File(error) => error.into(),
         Error::Stopped => Ended(End::Stopped).into(),
         error => error.into(),
     }

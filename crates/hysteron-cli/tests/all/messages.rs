@@ -50,7 +50,11 @@ fn wrong_words_are_told_what_was_meant() {
         ("model.json", "hysteron inspect model.json"),
         ("export model.json", "hysteron export c | arduino | fmu"),
         ("export fmi model.json", "'fmu'"),
-        ("fit run.csv", "hysteron inspect FILE"),
+        ("fit run.csv", "-o <MODEL>"),
+        (
+            "simulate model.json run.csv -o t.csv",
+            "hysteron inspect FILE",
+        ),
         ("invert model.json run.csv --input x", "--target"),
         (
             "fit run.csv --input x --output y --bootstrap -1 -o n.json",

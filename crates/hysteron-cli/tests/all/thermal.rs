@@ -108,7 +108,7 @@ fn what_a_body_cannot_do_is_refused_with_a_reason() {
         ),
         (
             format!("fit {COLUMNS} --thermal first-order -o out.csv"),
-            2,
+            1,
             "--time",
         ),
         (
