@@ -8,7 +8,7 @@ use crate::model::MODELS;
 use crate::objects::{LEARNERS, Learns};
 use crate::pointer::Arguments;
 use crate::shift_options::{HysteronShift, HysteronShiftOptions};
-use crate::steps::given;
+use crate::types::given;
 use crate::types::{self, HysteronAdaptation, HysteronLearning, status as status_constant};
 use hysteron::{Adaptation, Adaptive, AdaptiveLoad, Model, Sample, Wanted};
 use std::ffi::c_void;

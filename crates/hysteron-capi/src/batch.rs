@@ -9,7 +9,7 @@ use crate::model::MODELS;
 use crate::objects::STATES;
 use crate::pointer::Arguments;
 use crate::state::Running;
-use crate::steps::given;
+use crate::types::given;
 use hysteron::{BatchModel, Surroundings};
 use std::sync::{Mutex, PoisonError};
 

@@ -4,7 +4,7 @@ use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result, guard};
 use crate::model::MODELS;
 use crate::pointer::Arguments;
-use crate::steps::given;
+use crate::types::given;
 use hysteron::Policy;
 use hysteron::control::{Action, Gains, InnerLoop, LoopStatus, Safety, Scheme};
 

@@ -6,8 +6,8 @@ use crate::handles::Table;
 use crate::model::MODELS;
 use crate::objects::{LEARNERS, Object};
 use crate::pointer::Arguments;
-use crate::steps::given;
 use crate::types;
+use crate::types::given;
 use hysteron::control::{Compensator, Controller, Reading, Reference};
 
 /// A controller, and whether a sensor measures the input.

@@ -4,7 +4,7 @@ use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, guard};
 use crate::handles::Table;
 use crate::pointer::Arguments;
-use crate::steps::given;
+use crate::types::given;
 use crate::types::{
     HysteronModelInfo, HysteronModelNeeds, operator, operator_kind as kind_of, sign as sign_of,
 };

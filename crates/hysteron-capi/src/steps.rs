@@ -6,16 +6,11 @@ use crate::limits::HysteronLimits;
 use crate::objects::{Moves, STATES};
 use crate::pointer::Arguments;
 use crate::types::{
-    self, HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant,
+    self, HYSTERON_HOLD, clipped as clipped_constant, given, heading as heading_constant,
     status as status_constant,
 };
 use hysteron::{Model, Sample, Wanted, headings};
 use std::ptr::null;
-
-/// A number that may be missing, which is NaN in C.
-pub(crate) fn given(value: f64) -> Option<f64> {
-    (!value.is_nan()).then_some(value)
-}
 
 /// The series beside the inputs of a run, each as long as they are.
 struct Around<'a> {

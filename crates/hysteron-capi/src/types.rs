@@ -318,3 +318,8 @@ pub(crate) fn clipped(clipped: Option<Clipped>) -> i32 {
         Some(Clipped::High) => HYSTERON_HIGH,
     }
 }
+
+/// A number that may be missing, which is NaN in C.
+pub(crate) fn given(value: f64) -> Option<f64> {
+    (!value.is_nan()).then_some(value)
+}

@@ -1,34 +1,15 @@
 //! The blocks: model, inverse and controller, with offset and sign.
 
 use super::by_load::ByLoad;
-use super::controller::{Control, Loop, Settings};
+use super::settings::{Control, Settings};
 use super::stages::Constants;
+use super::state::{Loop, Mixed, State};
 use super::{Problem, Result};
 use crate::delay::{MOST, UnderWay};
 use hysteron_core::{
-    Clipped, Direction, Model, Output, Placed, Sample, Solution, StageState, Stages, Target, Turn,
-    Wanted, turn_capacity,
+    Clipped, Direction, Model, Output, Sample, Solution, StageState, Stages, Target, Turn, Wanted,
+    turn_capacity,
 };
-
-/// What a block remembers.
-#[derive(Debug, Clone)]
-pub(crate) struct State {
-    pub(crate) operators: hysteron_core::State<f64, Vec<Turn<f64>>>,
-    pub(crate) stages: StageState<f64>,
-    /// The model at the present load, where the weights depend on the load.
-    pub(crate) mixed: Option<Mixed>,
-    /// The inputs that do not act yet.
-    pub(crate) under_way: UnderWay<Vec<f64>>,
-    /// The rest of a controller, whose inverse is above.
-    pub(crate) own: Option<Box<Loop>>,
-}
-
-/// Operators at one load.
-#[derive(Debug, Clone)]
-pub(crate) struct Mixed {
-    model: Model<f64, Vec<f64>>,
-    placed: Option<Placed<f64>>,
-}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {

@@ -236,7 +236,7 @@ mod tests {
             stages: None,
             by_load: None,
             dead: (0, 0.0),
-            control: crate::fmi::controller::Control::NONE,
+            control: crate::fmi::settings::Control::NONE,
             start: None,
             first: (0.0, 0.0),
         };

@@ -1,6 +1,7 @@
 //! An instance: a block, its state in the standard's state machine, and its run.
 
-use super::block::{Block, Inputs, Outputs, State};
+use super::block::{Block, Inputs, Outputs};
+use super::state::State;
 use super::{Problem, Result};
 
 /// The states of the standards' state machine that this FMU uses.

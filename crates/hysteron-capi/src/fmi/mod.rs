@@ -21,8 +21,10 @@ mod lines;
 mod location;
 mod logger;
 mod resource;
+mod settings;
 mod snapshot;
 mod stages;
+mod state;
 mod states;
 mod values;
 

@@ -66,8 +66,8 @@
 
 use super::block::{Block, Kind};
 use super::by_load::ByLoad;
-use super::controller::Control;
 use super::lines::{Fault, Lines, Parsed};
+use super::settings::Control;
 use super::stages::{Constants, More};
 use super::{Problem, Result, checksum};
 use crate::delay::MOST;

@@ -1,8 +1,8 @@
 //! The variables of a block by their value references, as in the FMU's description.
 
 use super::block::{Block, Inputs, Kind};
-use super::controller::SETTINGS;
 use super::instance::{Instance, Phase};
+use super::settings::SETTINGS;
 use super::{Problem, Result};
 
 const TIME: u32 = 0;

@@ -540,10 +540,11 @@ impl Controller {
         self.smooth(changed, feedforward);
         // An inverse brings the output to the target in time. The reading is late by the filter:
         // compared with the target of now, the feedback would pull the drive away from where it is
-        // right. Without an inverse the lag is one of the loop, and a late target would add to it.
-        let wanted = match self.scheme.compensator {
-            Some(_) => self.wanted.filter(target.output, self.dt),
-            None => target.output,
+        // right. Without an inverse, or with an inner loop that takes its own time, the lag is one
+        // of the loop, and a late target would add to it.
+        let wanted = match (&self.scheme.compensator, self.scheme.inner) {
+            (Some(_), None) => self.wanted.filter(target.output, self.dt),
+            _ => target.output,
         };
         let error = measured.map(|measured| wanted - measured);
         if let Some(from) = self.begins_at() {

@@ -37,7 +37,7 @@ pub struct Scheme {
     /// The inner loop. Without one, the command is the drive.
     pub inner: Option<InnerLoop>,
     /// Time constant of the low-pass filter on both readings, s; 0 for no filter. Beside an inverse
-    /// the feedback compares the output with a target that is filtered alike.
+    /// without an inner loop the feedback compares the output with a target that is filtered alike.
     pub filter_s: f64,
     /// Time in seconds after which a sensor that gives nothing new is taken as broken. A missing
     /// reading, or one equal to the last to the last bit, is nothing new. Until this time has

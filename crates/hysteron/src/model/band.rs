@@ -2,7 +2,7 @@
 //! does not explain.
 
 use crate::error::{Error, Result};
-use crate::model::confidence::{Confidence, INTERVAL};
+use crate::model::confidence::{Confidence, INTERVAL, band_name};
 use crate::model::load::LoadPart;
 use crate::model::{Model, OperatorState, Operators, State, Surroundings};
 use crate::recording::Recording;
@@ -138,14 +138,6 @@ impl Band {
         }
         let half_width = |variance: f64| INTERVAL * variance.sqrt();
         Ok(variance.into_iter().map(half_width).collect())
-    }
-}
-
-/// What the 95 % band of a model that knows so many sessions is called.
-pub(crate) fn band_name(sessions: usize) -> String {
-    match sessions {
-        0 | 1 => "95 % band within its session".into(),
-        sessions => format!("95 % band of {sessions} sessions"),
     }
 }
 

@@ -1,7 +1,6 @@
 //! How well the data determined the weights of a model. This part of the model file is written by a
 //! fit.
 
-use crate::model::band::band_name;
 use crate::model::excitation::Excitation;
 use crate::model::load::LoadPart;
 use serde::{Deserialize, Serialize};
@@ -96,3 +95,11 @@ impl Confidence {
 
 /// Half the width of a 95 % interval of a normal distribution, in standard deviations.
 pub const INTERVAL: f64 = 1.959_963_984_540_054;
+
+/// What the 95 % band of a model that knows so many sessions is called.
+pub(crate) fn band_name(sessions: usize) -> String {
+    match sessions {
+        0 | 1 => "95 % band within its session".into(),
+        sessions => format!("95 % band of {sessions} sessions"),
+    }
+}

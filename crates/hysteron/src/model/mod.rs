@@ -37,11 +37,11 @@ mod within;
 
 pub use actuator::Model;
 pub(crate) use band::add_variance;
-pub(crate) use band::band_name;
 pub use band::{Band, BandEvaluation};
 pub use body::FirstOrder;
 pub(crate) use body::needs_time;
 pub use bounds::Bounds;
+pub(crate) use confidence::band_name;
 pub use confidence::{Confidence, INTERVAL};
 pub use constants::{CreepTerm, StageConstants};
 pub use delay::Delay;

@@ -1,10 +1,10 @@
 //! Reads recordings from files.
 
+use crate::data::log::HeldBack;
 use crate::data::recording::columns::Columns;
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{Note, NoteKind, Repair};
 use crate::data::recording::samples::Samples;
-use crate::data::roles::HeldBack;
 use crate::data::table::{Column, Memory, ReadOptions, TableReader};
 use crate::error::{Error, Place, Result};
 use crate::recording::{Origin, Quantity, Recording, Source};

@@ -5,14 +5,12 @@
 //! What this program wrote itself needs no evidence (`log`). Where a second answer is nearly as good as the first, the roles are in doubt, and nothing is
 //! guessed: a fit of the wrong columns looks like a fit.
 
-mod log;
 mod name;
 mod quantity;
 mod units;
 mod words;
 
-pub(super) use log::HeldBack;
-use log::Log;
+use crate::data::log::Log;
 use name::Name;
 use quantity::Quantity;
 pub(super) use quantity::Series;
@@ -90,8 +88,10 @@ const NEAR: i32 = 5;
 /// The roles of columns, where those of input, output, time and load that are `known` stand at these
 /// places.
 pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Roles {
+    let [input, output, time, _] = known;
+    let name = |place: Option<usize>| place.map(|n| columns.get(n).map_or("", |column| column.0));
     if let Some(log) = Log::of(columns.iter().map(|(name, ..)| *name))
-        && log.agrees(columns, known)
+        && log.agrees([input, output, time].map(name))
     {
         return of_log(log, columns, known[3]);
     }

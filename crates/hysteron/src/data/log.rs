@@ -1,11 +1,10 @@
 //! Tables that this program wrote itself: the log of `hysteron run`, and the course of a controller
 //! of `hysteron track`. Their columns are known, and which readings their loop did not believe.
 
-use super::Columns;
 use crate::data::table::{Column, TableReader};
 
 /// What the columns of such a table are.
-pub(in crate::data) struct Log {
+pub(super) struct Log {
     pub(super) what: &'static str,
     pub(super) input: &'static str,
     pub(super) output: &'static str,
@@ -49,28 +48,25 @@ impl Log {
                 .all(|needed| names.clone().any(|name| name == *needed))
         })
     }
-}
 
-impl Log {
     /// Whether the columns that are known of input, output and time are those of the log.
-    pub(super) fn agrees(&self, columns: &Columns<'_>, known: [Option<usize>; 4]) -> bool {
+    /// They are `None` where nothing is known.
+    pub(super) fn agrees(&self, known: [Option<&str>; 3]) -> bool {
         let own = [self.input, self.output, self.time];
-        let is = |(name, place): (&str, Option<usize>)| {
-            place.is_none_or(|n| columns.get(n).is_some_and(|column| column.0 == name))
-        };
-        own.into_iter().zip(known).all(is)
+        let mut pairs = own.into_iter().zip(known);
+        pairs.all(|(name, known)| known.is_none_or(|known| known == name))
     }
 }
 
 /// The columns that say which readings of a log are none.
-pub(in crate::data) struct HeldBack {
+pub(super) struct HeldBack {
     flags: Vec<Column>,
     words: &'static [&'static str],
 }
 
 impl HeldBack {
     /// `None` where `output` is not that of a log.
-    pub(in crate::data) fn of(table: &mut TableReader, output: &str) -> Option<Self> {
+    pub(super) fn of(table: &mut TableReader, output: &str) -> Option<Self> {
         let log = Log::of(table.header().iter().map(String::as_str))?;
         let flags = log.flags.iter().map(|name| table.column(name));
         (output == log.output).then_some(Self {
@@ -80,7 +76,7 @@ impl HeldBack {
     }
 
     /// Whether the present row has a reading that the loop did not believe.
-    pub(in crate::data) fn holds(&self, table: &TableReader) -> bool {
+    pub(super) fn holds(&self, table: &TableReader) -> bool {
         self.flags.iter().any(|&column| match self.words {
             [] => table.value(column) == Some(1.0),
             words => {
