@@ -117,7 +117,7 @@ fn run(model: &Model, scheme: &Scheme, fmi: Fmi, random: &mut StdRng) -> i32 {
         }
         let codes = (
             instance.set_integer(HEADING, heading),
-            instance.set_boolean(MANUAL, manual.into()),
+            instance.set_boolean(MANUAL, manual),
         );
         assert_eq!(codes, (0, 0));
         assert_eq!(instance.step(DT * f64::from(n), DT), 0);
