@@ -74,9 +74,18 @@ impl Studio {
     pub fn end(mut self) {
         self.stop.take().unwrap().send(()).unwrap();
         self.thread.take().unwrap().join().unwrap().unwrap();
-        assert!(
-            TcpStream::connect(("127.0.0.1", self.port)).is_err(),
-            "the port is still open"
-        );
+        assert!(!self.answers().unwrap_or(false), "the port is still open");
+    }
+
+    /// Whether this very studio answers: its port may belong to another program by now.
+    fn answers(&self) -> std::io::Result<bool> {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port))?;
+        stream.set_read_timeout(Some(std::time::Duration::from_secs(10)))?;
+        let (token, port) = (&self.token, self.port);
+        let call = format!("GET /{token}/ HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n");
+        stream.write_all(call.as_bytes())?;
+        let mut first = [0; 12];
+        stream.read_exact(&mut first)?;
+        Ok(first == *b"HTTP/1.1 200")
     }
 }
