@@ -202,7 +202,7 @@ impl Penalised {
         }
         // With smoothness most weights are not zero, so try block pivoting first.
         let (mut x, exact) = match (self.smoothness.is_any(), &self.matrix) {
-            (false, _) => (start.to_vec(), false),
+            (false, _) => (start.iter().map(|x| x.max(0.0)).collect(), false),
             (true, Matrix::Dense(matrix)) => pivoting::minimum(matrix, right, start),
             (true, Matrix::Corners(system)) => {
                 let gradient = |members: &[usize], values: &[f64]| {
