@@ -10,7 +10,7 @@
 //! | model | it records a fit and has exactly the bytes that this library would write |
 //! | table, CSV | its last columns are those that a command adds, written as we write them |
 //! | table, Parquet or Arrow file | its metadata name this library as the writer |
-//! | folder | each file matches its digest in the list ([`manifest`]) |
+//! | folder | each file matches its digest in the list (`manifest`) |
 //! | exported C | the digest in its first line matches the lines below |
 //! | FMU | its description names this program, and no file was added or replaced |
 //! | anything else | it already holds the bytes that are to be written |
