@@ -17,9 +17,6 @@ pub(crate) struct Late<T: ?Sized, B> {
     kept: UnderWay<B>,
 }
 
-type OfLibrary = Vec<f64>;
-type OfCaller = &'static mut [f64];
-
 impl<T: ?Sized, B: AsRef<[f64]> + AsMut<[f64]>> Late<T, B> {
     fn around(model: &Model, object: Box<T>, mut memory: impl FnMut() -> B) -> Self {
         Self {
@@ -70,15 +67,23 @@ pub(crate) fn size(model: &Model) -> Size {
     Size { numbers, turns: 0 }
 }
 
+/// The object behind the dead time of its model: itself where there is none. `late` makes an object
+/// of the same kind of both.
+fn behind<T: ?Sized, B: AsRef<[f64]> + AsMut<[f64]>>(
+    model: &Model,
+    object: Box<T>,
+    memory: impl FnMut() -> B,
+    late: fn(Late<T, B>) -> Box<T>,
+) -> Box<T> {
+    match model.delay().is_none() {
+        true => object,
+        false => late(Late::around(model, object, memory)),
+    }
+}
+
 /// A state behind the dead time of its model.
 pub(crate) fn moves(model: &Model, state: Box<dyn Moves>) -> Box<dyn Moves> {
-    match model.delay().is_none() {
-        true => state,
-        false => {
-            let late: Late<dyn Moves, OfLibrary> = Late::around(model, state, || vec![0.0; MOST]);
-            Box::new(late)
-        }
-    }
+    behind(model, state, || vec![0.0; MOST], |late| Box::new(late))
 }
 
 /// The same in memory of the caller.
@@ -87,25 +92,12 @@ pub(crate) fn moves_of_caller(
     state: Box<dyn Moves>,
     lent: &mut Lent,
 ) -> Box<dyn Moves> {
-    match model.delay().is_none() {
-        true => state,
-        false => {
-            let late: Late<dyn Moves, OfCaller> = Late::around(model, state, || lent.numbers(MOST));
-            Box::new(late)
-        }
-    }
+    behind(model, state, || lent.numbers(MOST), |late| Box::new(late))
 }
 
 /// A learner behind the dead time of its model.
 pub(crate) fn learns(model: &Model, learner: Box<dyn Learns>) -> Box<dyn Learns> {
-    match model.delay().is_none() {
-        true => learner,
-        false => {
-            let late: Late<dyn Learns, OfLibrary> =
-                Late::around(model, learner, || vec![0.0; MOST]);
-            Box::new(late)
-        }
-    }
+    behind(model, learner, || vec![0.0; MOST], |late| Box::new(late))
 }
 
 /// The same in memory of the caller.
@@ -114,14 +106,7 @@ pub(crate) fn learns_of_caller(
     learner: Box<dyn Learns>,
     lent: &mut Lent,
 ) -> Box<dyn Learns> {
-    match model.delay().is_none() {
-        true => learner,
-        false => {
-            let late: Late<dyn Learns, OfCaller> =
-                Late::around(model, learner, || lent.numbers(MOST));
-            Box::new(late)
-        }
-    }
+    behind(model, learner, || lent.numbers(MOST), |late| Box::new(late))
 }
 
 impl<B: AsRef<[f64]> + AsMut<[f64]> + Send> Moves for Late<dyn Moves, B> {

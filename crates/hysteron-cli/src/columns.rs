@@ -2,7 +2,7 @@
 
 use crate::args;
 use crate::terminal::{Result, say};
-use hysteron::{Columns, TableReader};
+use hysteron::{Columns, TablePreview, TableReader};
 use std::path::Path;
 
 /// Names of columns, some of which may not have been given.
@@ -12,6 +12,20 @@ pub(crate) struct Given<'a> {
     pub(crate) output: Option<&'a str>,
     pub(crate) time: Option<&'a str>,
     pub(crate) load: Option<&'a str>,
+}
+
+impl Given<'_> {
+    /// What is in a table of which these columns are known.
+    pub(crate) fn preview(&self, table: &mut TableReader) -> Result<TablePreview> {
+        let mut known = [None; 4];
+        let names = [self.input, self.output, self.time, self.load];
+        for (place, name) in known.iter_mut().zip(names) {
+            if let Some(name) = name {
+                *place = Some(table.column(name)?);
+            }
+        }
+        Ok(hysteron::preview_table_knowing(table, known)?)
+    }
 }
 
 /// Names of columns that are known.
@@ -44,14 +58,7 @@ impl Named {
             return Err(refused("the columns of standard input are not looked for").into());
         }
         let mut table = TableReader::open_with(path, repair.max_memory())?;
-        let mut known = [None; 4];
-        let names = [given.input, given.output, given.time, given.load];
-        for (place, name) in known.iter_mut().zip(names) {
-            if let Some(name) = name {
-                *place = Some(table.column(name)?);
-            }
-        }
-        let roles = hysteron::preview_table_knowing(&mut table, known)?.roles;
+        let roles = given.preview(&mut table)?.roles;
         let (Some(input), Some(output)) = (roles.input, roles.output) else {
             return Err(
                 refused("the columns do not tell which is the input and the output").into(),

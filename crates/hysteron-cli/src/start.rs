@@ -1,5 +1,6 @@
 //! `hysteron start`: what is in a file, a first fit, and the commands to go on with.
 
+use crate::columns::Given;
 use crate::terminal::{Result, Unclear, print, say};
 use crate::{args, hold_out, progress, recording, remedy, text};
 use hysteron::{
@@ -19,14 +20,13 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     });
     let file = file.transpose()?;
     let mut table = TableReader::open_with(&args.file, args.repair.max_memory())?;
-    let given = [&args.input, &args.output, &args.time, &args.load];
-    let mut known = [None; 4];
-    for (place, name) in known.iter_mut().zip(given) {
-        if let Some(name) = name {
-            *place = Some(table.column(name)?);
-        }
-    }
-    let preview = hysteron::preview_table_knowing(&mut table, known)?;
+    let given = Given {
+        input: args.input.as_deref(),
+        output: args.output.as_deref(),
+        time: args.time.as_deref(),
+        load: args.load.as_deref(),
+    };
+    let preview = given.preview(&mut table)?;
     drop(table);
     let roles = &preview.roles;
     let (Some(input), Some(output)) = (&roles.input, &roles.output) else {

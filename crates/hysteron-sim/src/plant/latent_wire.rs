@@ -8,8 +8,8 @@
 //!   (Churchill & Chu 1975). The heat content is what is integrated. So no heat is lost in a step,
 //!   however steep the transformation is.
 
-use super::divided;
 use super::sensor::{SensorChain, SensorOptions};
+use super::{check_room, divided};
 use crate::rig::{Body, Direction, MaterialPoint, RigError, Spring, Transformation, Wire, check};
 use core::f64::consts::PI;
 use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
@@ -359,8 +359,4 @@ fn modulus_mpa(xi: f64) -> f64 {
 /// transformations would be driven at once.
 fn check_load(load_n: f64) -> Result<(), RigError> {
     check("load (N)", load_n, 1.0, 4.0)
-}
-
-fn check_room(degc: f64) -> Result<(), RigError> {
-    check("temperature of the room (degC)", degc, -20.0, 50.0)
 }

@@ -32,6 +32,8 @@ pub use sensor::{SensorChain, SensorOptions};
 pub use spring::{SpringPlant, SpringPlantOptions};
 pub use wire::{WirePlant, WirePlantOptions};
 
+use crate::rig::{RigError, check};
+
 /// Divides `dt_s` (s) into equal steps, none longer than `longest_s`: their number and length. No
 /// steps for a time that is not finite or not above zero.
 fn divided(dt_s: f64, longest_s: f64) -> (u64, f64) {
@@ -40,4 +42,8 @@ fn divided(dt_s: f64, longest_s: f64) -> (u64, f64) {
     }
     let steps = (dt_s / longest_s).ceil().max(1.0);
     (steps as u64, dt_s / steps)
+}
+
+fn check_room(degc: f64) -> Result<(), RigError> {
+    check("temperature of the room (degC)", degc, -20.0, 50.0)
 }

@@ -1,8 +1,8 @@
 //! A wire without a thermometer: duty in, displacement out, nothing else measured.
 
-use super::divided;
 use super::relays::{Relay, Relays};
 use super::sensor::{SensorChain, SensorOptions};
+use super::{check_room, divided};
 use crate::rig::{RigError, check};
 use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
 use serde::Deserialize;
@@ -192,8 +192,4 @@ impl SimulatedPlant for WirePlant {
 
 fn check_load(load_n: f64) -> Result<(), RigError> {
     check("load (N)", load_n, 0.0, 20.0)
-}
-
-fn check_room(degc: f64) -> Result<(), RigError> {
-    check("temperature of the room (degC)", degc, -20.0, 50.0)
 }
