@@ -272,7 +272,7 @@ pub(crate) fn tune(
 /// Examples
 /// --------
 /// >>> sorted(pyhysteron.scenarios())
-/// ['drift', 'faults', 'load-step', 'load-step-preisach', 'sine', 'staircase', 'wire']
+/// ['bouc-wen', 'drift', 'faults', 'latent-wire', 'load-step', 'load-step-preisach', 'sine', 'staircase', 'wire']
 #[pyfunction]
 pub(crate) fn scenarios(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
