@@ -271,8 +271,8 @@ pub(crate) fn tune(
 ///
 /// Examples
 /// --------
-/// >>> sorted(pyhysteron.scenarios())
-/// ['bouc-wen', 'drift', 'faults', 'latent-wire', 'load-step', 'load-step-preisach', 'sine', 'staircase', 'wire']
+/// >>> print(*sorted(pyhysteron.scenarios()))
+/// bouc-wen drift faults latent-wire load-step load-step-preisach sine staircase wire
 #[pyfunction]
 pub(crate) fn scenarios(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
