@@ -4,7 +4,8 @@ use super::added::{Added, AddedCells};
 use super::parquet::{Cells, Kind, PROGRAM};
 use super::spool::distinct;
 use super::table::Sink;
-use crate::data::table::{Batches, arrow_caught};
+use super::writer::{RowWriter, Rows};
+use crate::data::table::{Batches, Needs, arrow_caught};
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray};
 use arrow_ipc::reader::read_footer_length;
 use arrow_ipc::root_as_footer;
@@ -126,11 +127,7 @@ impl ArrowCopy {
     }
 
     /// Adds the new cells of the next rows.
-    pub(super) fn rows(
-        &mut self,
-        (cells, mut from): (&AddedCells, usize),
-        count: usize,
-    ) -> io::Result<()> {
+    fn rows(&mut self, (cells, mut from): (&AddedCells, usize), count: usize) -> io::Result<()> {
         let end = from + count;
         while from < end {
             // The cells go into one part after the other.
@@ -166,11 +163,20 @@ impl ArrowCopy {
         }
         Ok(())
     }
+}
 
-    /// Ends the copy, after the last row.
-    pub(super) fn finish(self) -> io::Result<Sink> {
+impl RowWriter for ArrowCopy {
+    fn needs(&self) -> Needs {
+        Needs::Nothing
+    }
+
+    fn extended(&mut self, rows: &Rows<'_>) -> io::Result<()> {
+        self.rows(rows.cells, rows.count)
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<Option<Sink>> {
         match self.part {
-            None => self.writer.finish(),
+            None => self.writer.finish().map(Some),
             Some(_) => Err(io::Error::other(
                 "the input file has changed while it was read",
             )),

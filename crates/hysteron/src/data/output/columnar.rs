@@ -1,16 +1,16 @@
 //! Writes tables by columns, as Parquet or Arrow, from cells of known kinds.
 
-use super::added::{Added, AddedCells};
+use super::added::Added;
 use super::arrow::ArrowWriter;
 use super::parquet::{Cells, Kind, field, io_error, properties};
 use super::spool::distinct;
 use super::table::Sink;
-use crate::data::table::Block;
+use super::writer::{RowWriter, Rows};
+use crate::data::table::Needs;
 use parquet::errors::Result;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::io;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// A format that stores columns.
@@ -84,35 +84,6 @@ impl ColumnsWriter {
         Self::start(out, format, &columns, &computed)
     }
 
-    /// Adds rows of numbers, each followed by more cells.
-    pub(super) fn extended(
-        &mut self,
-        (block, first): (&Block, usize),
-        (cells, from): (&AddedCells, usize),
-        count: usize,
-    ) -> io::Result<()> {
-        let rows: Range<usize> = first..first + count;
-        let source = block.copied();
-        let (copied, added) = self.columns.split_at_mut(source.len());
-        for (column, series) in copied.iter_mut().zip(source) {
-            // A column that is shorter than others has no cells below its end.
-            for row in rows.clone() {
-                let number = series.get(row).copied();
-                column.push_number(number.filter(|number| !number.is_nan()));
-            }
-        }
-        let (numbers, words) = added.split_at_mut(cells.numbers.len());
-        for (column, series) in numbers.iter_mut().zip(&cells.numbers) {
-            column.push_numbers(&series[from..from + count]);
-        }
-        for column in words {
-            for word in &cells.words[from..from + count] {
-                column.push_text(Some(word.as_bytes()));
-            }
-        }
-        self.end_rows(count * self.columns.len() * size_of::<f64>())
-    }
-
     /// Counts the bytes of rows that were added, and writes the cells if they are many.
     pub(super) fn end_rows(&mut self, bytes: usize) -> io::Result<()> {
         self.bytes += bytes;
@@ -146,5 +117,38 @@ impl ColumnsWriter {
             To::Parquet(writer) => writer.into_inner().map_err(io_error),
             To::Arrow(writer) => writer.finish(),
         }
+    }
+}
+
+impl RowWriter for ColumnsWriter {
+    fn needs(&self) -> Needs {
+        Needs::Numbers
+    }
+
+    fn extended(&mut self, rows: &Rows<'_>) -> io::Result<()> {
+        let ((block, first), (cells, from), count) = (rows.block, rows.cells, rows.count);
+        let source = block.copied();
+        let (copied, added) = self.columns.split_at_mut(source.len());
+        for (column, series) in copied.iter_mut().zip(source) {
+            // A column that is shorter than others has no cells below its end.
+            for row in first..first + count {
+                let number = series.get(row).copied();
+                column.push_number(number.filter(|number| !number.is_nan()));
+            }
+        }
+        let (numbers, words) = added.split_at_mut(cells.numbers.len());
+        for (column, series) in numbers.iter_mut().zip(&cells.numbers) {
+            column.push_numbers(&series[from..from + count]);
+        }
+        for column in words {
+            for word in &cells.words[from..from + count] {
+                column.push_text(Some(word.as_bytes()));
+            }
+        }
+        self.end_rows(count * self.columns.len() * size_of::<f64>())
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<Option<Sink>> {
+        (*self).finish().map(Some)
     }
 }

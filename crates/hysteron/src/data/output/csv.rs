@@ -1,8 +1,9 @@
 //! Writes rows of CSV to a stream, a block at a time.
 
-use super::added::AddedCells;
-use crate::data::cells::{push_number, push_row};
-use crate::data::table::Block;
+use super::table::Sink;
+use super::writer::{RowWriter, Rows};
+use crate::data::cells::push_number;
+use crate::data::table::Needs;
 use std::io::{self, Write};
 
 /// Rows are handed on when they take this many bytes.
@@ -23,22 +24,10 @@ impl<W: Write> Csv<W> {
         }
     }
 
-    pub(super) fn row<C: AsRef<[u8]>>(
-        &mut self,
-        cells: impl IntoIterator<Item = C>,
-    ) -> io::Result<()> {
-        push_row(&mut self.held, cells);
-        self.end_row()
-    }
-
     /// Rows that are CSV already, each followed by more cells.
-    pub(super) fn extended(
-        &mut self,
-        (block, first): (&Block, usize),
-        (cells, from): (&AddedCells, usize),
-        count: usize,
-    ) -> io::Result<()> {
-        for n in 0..count {
+    pub(super) fn extended(&mut self, rows: &Rows<'_>) -> io::Result<()> {
+        let ((block, first), (cells, from)) = (rows.block, rows.cells);
+        for n in 0..rows.count {
             self.held.extend_from_slice(block.row(first + n));
             for series in &cells.numbers {
                 self.held.push(b',');
@@ -87,6 +76,28 @@ impl<W: Write> Csv<W> {
             to.flush()?;
         }
         Ok(to)
+    }
+}
+
+impl RowWriter for Csv<Sink> {
+    fn needs(&self) -> Needs {
+        Needs::Text
+    }
+
+    fn row(&mut self, row: &[u8]) -> io::Result<()> {
+        self.copied(row)
+    }
+
+    fn extended(&mut self, rows: &Rows<'_>) -> io::Result<()> {
+        self.extended(rows)
+    }
+
+    fn hand_on(&mut self) -> io::Result<()> {
+        self.hand_on()
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<Option<Sink>> {
+        (*self).finish()
     }
 }
 

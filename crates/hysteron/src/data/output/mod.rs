@@ -1,6 +1,6 @@
 //! Writes tables and records, into files that appear complete or not at all (`hysteron_files`).
 //!
-//! `table` writes tables, `added` is what commands add to them; `csv` writes them as text;
+//! `table` writes tables through a `writer` for each format, `added` is what commands add to them; `csv` writes them as text;
 //! `columnar` writes columns as Parquet (`parquet`) or Arrow (`arrow`), `spool` keeps rows until
 //! their types are known, and `splice` copies Parquet. `sign` recognises tables of ours. `records`
 //! writes and reads tables of typed columns, `partial` keeps records while a long work makes them.
@@ -16,10 +16,10 @@ mod sign;
 mod splice;
 mod spool;
 mod table;
+mod writer;
 
 pub use added::Added;
 pub(crate) use added::AddedCells;
 pub(crate) use partial::{Entry, Partial};
 pub(crate) use records::{Kind, RecordWriter, Schema, Value, read_records};
-pub(crate) use table::Needs;
 pub use table::{STANDARD_OUTPUT, TableWriter};

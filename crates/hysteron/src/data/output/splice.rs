@@ -5,14 +5,15 @@ use super::added::{Added, AddedCells};
 use super::parquet::{Cells, Kind, field, io_error, properties};
 use super::spool::distinct;
 use super::table::Sink;
-use crate::data::table::{Pages, TableReader, caught};
+use super::writer::{RowWriter, Rows};
+use crate::data::table::{Needs, Pages, caught};
 use parquet::column::writer::ColumnCloseResult;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::sync::Arc;
 
 /// Metadata of Apache Arrow about the columns. It would no longer describe all of them, so it is
@@ -20,28 +21,12 @@ use std::sync::Arc;
 const ARROW_SCHEMA: &str = "ARROW:schema";
 
 /// A Parquet file that is copied column by column.
-pub(super) struct Original {
+struct Original {
     file: File,
     pages: Pages,
 }
 
 impl Original {
-    /// Opens the file of a table; `None` for another format.
-    pub(super) fn open(table: &TableReader) -> io::Result<Option<Self>> {
-        let path = table.path();
-        if !path.is_file() {
-            return Ok(None);
-        }
-        let mut file = File::open(path)?;
-        let mut head = Vec::new();
-        Read::by_ref(&mut file).take(4).read_to_end(&mut head)?;
-        if head != b"PAR1" {
-            return Ok(None);
-        }
-        let pages = table.pages(&file).map_err(io::Error::other)?;
-        Ok(Some(Self { file, pages }))
-    }
-
     fn rows(&self, group: usize) -> Option<u64> {
         let group = self.pages.about().row_groups().get(group)?;
         Some(group.num_rows().max(0) as u64)
@@ -58,7 +43,13 @@ pub(super) struct Splice {
 }
 
 impl Splice {
-    pub(super) fn start(original: Original, out: Sink, added: &[Added]) -> io::Result<Self> {
+    /// Starts the copy of a file whose pages are read on the way.
+    pub(super) fn start(
+        (file, pages): (File, Pages),
+        out: Sink,
+        added: &[Added],
+    ) -> io::Result<Self> {
+        let original = Original { file, pages };
         let about = original.pages.about().file_metadata();
         let root = about.schema_descr().root_schema();
         let there = root.get_fields().iter();
@@ -99,11 +90,7 @@ impl Splice {
     }
 
     /// Adds the new cells of the next rows.
-    pub(super) fn rows(
-        &mut self,
-        (cells, mut from): (&AddedCells, usize),
-        count: usize,
-    ) -> io::Result<()> {
+    fn rows(&mut self, (cells, mut from): (&AddedCells, usize), count: usize) -> io::Result<()> {
         let end = from + count;
         while from < end {
             // The cells go into one row group after the other.
@@ -156,11 +143,20 @@ impl Splice {
         }
         group.close().map(|_| ())
     }
+}
 
-    /// Ends the copy, after the last row.
-    pub(super) fn finish(self) -> io::Result<Sink> {
+impl RowWriter for Splice {
+    fn needs(&self) -> Needs {
+        Needs::Nothing
+    }
+
+    fn extended(&mut self, rows: &Rows<'_>) -> io::Result<()> {
+        self.rows(rows.cells, rows.count)
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<Option<Sink>> {
         match self.original.rows(self.group) {
-            None => self.writer.into_inner().map_err(io_error),
+            None => self.writer.into_inner().map(Some).map_err(io_error),
             Some(_) => Err(io::Error::other(
                 "the input file has changed while it was read",
             )),

@@ -4,13 +4,12 @@
 //! a name, which the system removes when the program ends. Memory does not grow with the number of
 //! rows. The rows of a table in memory are stored in memory.
 
-use super::added::AddedCells;
 use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
 use super::parquet::Kind;
 use super::table::Sink;
-use crate::data::cells::push_row;
-use crate::data::table::{Block, Growing, Memory, Splitter};
+use super::writer::{RowWriter, Rows};
+use crate::data::table::{Growing, Memory, Needs, Splitter};
 use hysteron_files::bare;
 use std::collections::HashSet;
 use std::fs::File;
@@ -21,10 +20,12 @@ use std::path::Path;
 /// The stored rows. The first one is the header.
 pub(super) struct Spool {
     rows: Csv<Store>,
-    header: Option<Vec<String>>,
+    /// The kinds of the columns; none before the header.
     kinds: Vec<Kind>,
-    row: Vec<u8>,
     splitter: Splitter,
+    /// Where the table is written in the end, and how.
+    out: Sink,
+    format: Columnar,
 }
 
 enum Store {
@@ -62,63 +63,34 @@ impl Write for Store {
 }
 
 impl Spool {
-    /// Creates the store in a folder that has enough space.
-    pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
+    /// A table whose rows are stored in a folder that has enough space.
+    pub(super) fn create_in(folder: &Path, out: Sink, format: Columnar) -> io::Result<Self> {
         let file = tempfile::tempfile_in(folder).map_err(bare)?;
-        Ok(Self::of(Store::File(file)))
+        Ok(Self::over(Store::File(file), out, format))
     }
 
-    pub(super) fn in_memory(account: &Memory) -> Self {
-        Self::of(Store::Memory(Growing::new(account)))
+    /// A table whose rows are stored in memory.
+    pub(super) fn in_memory(account: &Memory, out: Sink, format: Columnar) -> Self {
+        Self::over(Store::Memory(Growing::new(account)), out, format)
     }
 
-    fn of(store: Store) -> Self {
+    fn over(store: Store, out: Sink, format: Columnar) -> Self {
         Self {
             rows: Csv::new(store),
-            header: None,
             kinds: Vec::new(),
-            row: Vec::new(),
             splitter: Splitter::default(),
+            out,
+            format,
         }
     }
 
-    pub(super) fn row<C: AsRef<[u8]>>(
-        &mut self,
-        cells: impl IntoIterator<Item = C>,
-    ) -> io::Result<()> {
-        if self.header.is_none() {
-            let names = cells.into_iter();
-            let names = names.map(|name| String::from_utf8_lossy(name.as_ref()).into_owned());
-            let names: Vec<String> = names.collect();
-            self.kinds = vec![Kind::Numbers; names.len()];
-            self.header = Some(names);
-            return Ok(());
-        }
-        let mut row = std::mem::take(&mut self.row);
-        row.clear();
-        push_row(&mut row, cells);
-        self.note(&row);
-        let written = self.rows.copied(&row);
-        self.row = row;
-        written
+    pub(super) fn format(&self) -> Columnar {
+        self.format
     }
 
-    /// Rows that are CSV already, each followed by more cells.
-    pub(super) fn extended(
-        &mut self,
-        (block, first): (&Block, usize),
-        cells: (&AddedCells, usize),
-        count: usize,
-    ) -> io::Result<()> {
-        for n in 0..count {
-            self.note(block.row(first + n));
-        }
-        if !cells.0.words.is_empty()
-            && let Some(last) = self.kinds.last_mut()
-        {
-            *last = Kind::Text;
-        }
-        self.rows.extended((block, first), cells, count)
+    /// Where the table is written, of a store without rows.
+    pub(super) fn unused(self) -> Sink {
+        self.out
     }
 
     /// Notes what the cells of a row need.
@@ -130,26 +102,60 @@ impl Spool {
             }
         });
     }
+}
+
+impl RowWriter for Spool {
+    fn needs(&self) -> Needs {
+        Needs::Text
+    }
+
+    fn row(&mut self, row: &[u8]) -> io::Result<()> {
+        match self.kinds.is_empty() {
+            true => {
+                let mut columns = 0;
+                self.splitter.line(row, b',', |_| columns += 1);
+                self.kinds = vec![Kind::Numbers; columns];
+            }
+            false => self.note(row),
+        }
+        self.rows.copied(row)
+    }
+
+    fn extended(&mut self, rows: &Rows<'_>) -> io::Result<()> {
+        let (block, first) = rows.block;
+        for n in 0..rows.count {
+            self.note(block.row(first + n));
+        }
+        if !rows.cells.0.words.is_empty()
+            && let Some(last) = self.kinds.last_mut()
+        {
+            *last = Kind::Text;
+        }
+        self.rows.extended(rows)
+    }
 
     /// Writes all rows by columns.
-    pub(super) fn finish(self, out: Sink, format: Columnar) -> io::Result<Sink> {
+    fn finish(self: Box<Self>) -> io::Result<Option<Sink>> {
         let Some(stored) = self.rows.finish()? else {
-            return Ok(out);
+            return Ok(None);
         };
-        let header = self.header.unwrap_or_default();
-        distinct(header.iter())?;
-        let names = header.iter().map(String::as_str);
-        let columns: Vec<(&str, Kind)> = names.zip(self.kinds.iter().copied()).collect();
-        let mut writer = ColumnsWriter::start(out, format, &columns, &[])?;
-        write(&mut writer, stored.read()?)?;
-        writer.finish()
+        let mut rows = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .from_reader(stored.read()?);
+        let mut header = csv::ByteRecord::new();
+        rows.read_byte_record(&mut header)?;
+        let names: Vec<_> = header.iter().map(String::from_utf8_lossy).collect();
+        distinct(names.iter())?;
+        let columns = names.iter().map(AsRef::as_ref);
+        let columns: Vec<(&str, Kind)> = columns.zip(self.kinds.iter().copied()).collect();
+        let mut writer = ColumnsWriter::start(self.out, self.format, &columns, &[])?;
+        write(&mut writer, rows)?;
+        writer.finish().map(Some)
     }
 }
 
-fn write(writer: &mut ColumnsWriter, rows: impl Read) -> io::Result<()> {
-    let mut rows = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .from_reader(rows);
+/// Writes the rows below the header.
+fn write(writer: &mut ColumnsWriter, mut rows: csv::Reader<impl Read>) -> io::Result<()> {
     let mut row = csv::ByteRecord::new();
     while rows.read_byte_record(&mut row)? {
         for (column, cell) in writer.columns.iter_mut().zip(&row) {

@@ -5,9 +5,11 @@ use super::arrow::ArrowCopy;
 use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
 use super::sign::is_our_table;
-use super::splice::{Original, Splice};
+use super::splice::Splice;
 use super::spool::Spool;
-use crate::data::table::{Block, Growing, Memory, TableReader};
+use super::writer::{RowWriter, Rows};
+use crate::data::cells::push_row;
+use crate::data::table::{Block, Growing, Memory, Needs, TableReader};
 use crate::error::{Error, Result};
 use hysteron_files::{AtomicFile, Destination, Own, folder_of};
 use std::io::{self, Write};
@@ -31,27 +33,24 @@ pub const STANDARD_OUTPUT: &str = "standard output";
 /// can hold all of it: `007` and 2⁵³ + 1 are text.
 pub struct TableWriter {
     path: PathBuf,
-    to: Format,
+    to: To,
+    /// The row being written.
+    row: Vec<u8>,
 }
 
-enum Format {
-    Csv(Csv<Sink>),
-    /// Rows of cells, until their kinds are known.
-    Spooled(Spool, Sink, Columnar),
-    Columns(Box<ColumnsWriter>),
-    Spliced(Box<Splice>),
-    Arrow(Box<ArrowCopy>),
+enum To {
+    /// Rows of cells, until their kinds are known: by columns, if the source is not told.
+    Spooled(Box<Spool>),
+    Rows(Box<dyn RowWriter>),
 }
 
-/// What a writer needs of the rows of its source.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Needs {
-    /// Nothing: it copies them itself.
-    Nothing,
-    /// Their numbers.
-    Numbers,
-    /// Their text.
-    Text,
+impl To {
+    fn writer(&mut self) -> &mut dyn RowWriter {
+        match self {
+            To::Spooled(spool) => spool.as_mut(),
+            To::Rows(writer) => writer.as_mut(),
+        }
+    }
 }
 
 pub(super) enum Sink {
@@ -124,10 +123,8 @@ impl TableWriter {
 
     fn start(target: Option<Destination<'_>>, own: Own) -> Result<Self> {
         let Some(target) = target.filter(|target| target.path() != Path::new("-")) else {
-            return Ok(Self {
-                path: STANDARD_OUTPUT.into(),
-                to: Format::Csv(Csv::new(Sink::Stdout(io::stdout()))),
-            });
+            let csv = Csv::new(Sink::Stdout(io::stdout()));
+            return Ok(Self::over(STANDARD_OUTPUT.into(), To::Rows(Box::new(csv))));
         };
         let path = target.path().to_owned();
         let failed = |source| Error::File {
@@ -135,15 +132,23 @@ impl TableWriter {
             source,
         };
         let columnar = format_of(&path).map_err(failed)?;
-        let file = AtomicFile::create(target, own)?;
+        let file = Sink::File(AtomicFile::create(target, own)?);
         let to = match columnar {
-            None => Format::Csv(Csv::new(Sink::File(file))),
+            None => To::Rows(Box::new(Csv::new(file))),
             Some(format) => {
-                let spool = Spool::create_in(folder_of(&path)).map_err(failed)?;
-                Format::Spooled(spool, Sink::File(file), format)
+                let spool = Spool::create_in(folder_of(&path), file, format);
+                To::Spooled(Box::new(spool.map_err(failed)?))
             }
         };
-        Ok(Self { path, to })
+        Ok(Self::over(path, to))
+    }
+
+    fn over(path: PathBuf, to: To) -> Self {
+        Self {
+            path,
+            to,
+            row: Vec::new(),
+        }
     }
 
     /// A table in memory, within an account, in the format that the ending of `name` decides. No file
@@ -168,10 +173,10 @@ impl TableWriter {
         })?;
         let memory = Sink::Memory(Growing::new(account));
         let to = match columnar {
-            None => Format::Csv(Csv::new(memory)),
-            Some(format) => Format::Spooled(Spool::in_memory(account), memory, format),
+            None => To::Rows(Box::new(Csv::new(memory))),
+            Some(format) => To::Spooled(Box::new(Spool::in_memory(account, memory, format))),
         };
-        Ok(Self { path, to })
+        Ok(Self::over(path, to))
     }
 
     /// Begins a table with the columns of another one, followed by `added`.
@@ -179,8 +184,8 @@ impl TableWriter {
     /// # Errors
     /// [`Error::File`].
     pub fn begin(mut self, table: &TableReader, added: &[Added]) -> Result<Self> {
-        if let Format::Spooled(spool, sink, format) = self.to {
-            self.to = Self::columnar(&self.path, table, added, (spool, sink, format))?;
+        if let To::Spooled(spool) = self.to {
+            self.to = Self::columnar(&self.path, table, added, spool)?;
         }
         let names = added.iter().map(|column| column.name().to_owned());
         self.row(table.header().iter().cloned().chain(names))?;
@@ -193,44 +198,36 @@ impl TableWriter {
         path: &Path,
         table: &TableReader,
         added: &[Added],
-        (spool, sink, format): (Spool, Sink, Columnar),
-    ) -> Result<Format> {
-        let of = |path: &Path, source| Error::File {
-            path: path.to_owned(),
-            source,
+        spool: Box<Spool>,
+    ) -> Result<To> {
+        let of = |path: &Path| {
+            let path = path.to_owned();
+            move |source| Error::File { path, source }
         };
+        let (from, to) = (of(table.path()), of(path));
+        let format = spool.format();
         if format == Columnar::Parquet {
-            let original = Original::open(table);
-            if let Some(original) = original.map_err(|source| of(table.path(), source))? {
-                let splice = Splice::start(original, sink, added);
-                let splice = splice.map_err(|source| of(path, source))?;
-                return Ok(Format::Spliced(Box::new(splice)));
+            if let Some(file) = table.pages().map_err(io::Error::other).map_err(from)? {
+                let splice = Splice::start(file, spool.unused(), added).map_err(to)?;
+                return Ok(To::Rows(Box::new(splice)));
             }
-        } else {
-            let batches = table.batches().map_err(io::Error::other);
-            if let Some(batches) = batches.map_err(|source| of(table.path(), source))? {
-                let is_stream = format == Columnar::ArrowStream;
-                let copy = ArrowCopy::start(batches, sink, is_stream, added);
-                return Ok(Format::Arrow(Box::new(
-                    copy.map_err(|source| of(path, source))?,
-                )));
-            }
+        } else if let Some(batches) = table.batches().map_err(io::Error::other).map_err(from)? {
+            let is_stream = format == Columnar::ArrowStream;
+            let copy = ArrowCopy::start(batches, spool.unused(), is_stream, added).map_err(to)?;
+            return Ok(To::Rows(Box::new(copy)));
         }
         if !table.is_by_columns() {
-            return Ok(Format::Spooled(spool, sink, format));
+            return Ok(To::Spooled(spool));
         }
-        let columns = ColumnsWriter::of_numbers(sink, format, table.header(), added);
-        Ok(Format::Columns(Box::new(
-            columns.map_err(|source| of(path, source))?,
-        )))
+        let columns = ColumnsWriter::of_numbers(spool.unused(), format, table.header(), added);
+        Ok(To::Rows(Box::new(columns.map_err(to)?)))
     }
 
     /// What [`TableWriter::extend_rows`] needs of the source.
     pub(crate) fn needs(&self) -> Needs {
-        match self.to {
-            Format::Csv(_) | Format::Spooled(..) => Needs::Text,
-            Format::Columns(_) => Needs::Numbers,
-            Format::Spliced(_) | Format::Arrow(_) => Needs::Nothing,
+        match &self.to {
+            To::Spooled(spool) => spool.needs(),
+            To::Rows(writer) => writer.needs(),
         }
     }
 
@@ -241,17 +238,16 @@ impl TableWriter {
     /// [`Error::File`].
     pub(crate) fn extend_rows(
         &mut self,
-        rows: (&Block, usize),
+        block: (&Block, usize),
         cells: (&AddedCells, usize),
         count: usize,
     ) -> Result<()> {
-        let written = match &mut self.to {
-            Format::Csv(csv) => csv.extended(rows, cells, count),
-            Format::Spooled(spool, ..) => spool.extended(rows, cells, count),
-            Format::Columns(columns) => columns.extended(rows, cells, count),
-            Format::Spliced(splice) => splice.rows(cells, count),
-            Format::Arrow(copy) => copy.rows(cells, count),
+        let rows = Rows {
+            block,
+            cells,
+            count,
         };
+        let written = self.to.writer().extended(&rows);
         written.map_err(|source| self.failed(source))
     }
 
@@ -260,10 +256,8 @@ impl TableWriter {
     /// # Errors
     /// [`Error::File`].
     pub(crate) fn hand_on(&mut self) -> Result<()> {
-        match &mut self.to {
-            Format::Csv(csv) => csv.hand_on().map_err(|source| self.failed(source)),
-            _ => Ok(()),
-        }
+        let handed = self.to.writer().hand_on();
+        handed.map_err(|source| self.failed(source))
     }
 
     /// Writes a row of cells. The first row holds the names of the columns.
@@ -271,12 +265,9 @@ impl TableWriter {
     /// # Errors
     /// [`Error::File`].
     pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) -> Result<()> {
-        let written = match &mut self.to {
-            Format::Csv(csv) => csv.row(cells),
-            Format::Spooled(spool, ..) => spool.row(cells),
-            // The header is there since the beginning.
-            Format::Columns(_) | Format::Spliced(_) | Format::Arrow(_) => Ok(()),
-        };
+        self.row.clear();
+        push_row(&mut self.row, cells);
+        let written = self.to.writer().row(&self.row);
         written.map_err(|source| self.failed(source))
     }
 
@@ -312,11 +303,8 @@ impl TableWriter {
     fn end(self) -> Result<Option<Sink>> {
         let path = self.path;
         let ended = match self.to {
-            Format::Csv(csv) => csv.finish(),
-            Format::Spooled(spool, to, format) => spool.finish(to, format).map(Some),
-            Format::Columns(columns) => columns.finish().map(Some),
-            Format::Spliced(splice) => splice.finish().map(Some),
-            Format::Arrow(copy) => copy.finish().map(Some),
+            To::Spooled(spool) => spool.finish(),
+            To::Rows(writer) => writer.finish(),
         };
         ended.map_err(|source| Error::File { path, source })
     }

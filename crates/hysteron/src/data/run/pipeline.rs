@@ -5,8 +5,8 @@
 
 use super::Counts;
 use super::sink::Sink;
-use crate::data::output::{Added, AddedCells, Needs, TableWriter};
-use crate::data::table::{Block, Column, TableReader};
+use crate::data::output::{Added, AddedCells, TableWriter};
+use crate::data::table::{Block, Column, Needs, TableReader};
 use crate::error::Result;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};

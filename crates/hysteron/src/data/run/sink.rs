@@ -1,7 +1,7 @@
 //! Pairs the rows of a table with the cells that come for them in the same order.
 
-use crate::data::output::{Added, AddedCells, Needs, TableWriter};
-use crate::data::table::{Block, TableReader};
+use crate::data::output::{Added, AddedCells, TableWriter};
+use crate::data::table::{Block, Needs, TableReader};
 use crate::error::Result;
 use std::collections::VecDeque;
 

@@ -3,21 +3,42 @@
 mod batches;
 mod numbers;
 
-pub(in crate::data) use batches::{Batches, FILE, STREAM, caught};
+pub(in crate::data) use batches::{Batches, FILE, caught};
 
 use super::TableReader;
 use super::budget::Budget;
-use super::labels::Labels;
 use super::numbers::Numbers;
-use super::parquet::{Opened, ReadSeek};
-use super::wanted::Wanted;
+use super::stored::{Asked, Format, Opened, Stored};
 use arrow_array::cast::AsArray;
 use arrow_array::{Array, ArrayRef, RecordBatch};
 use arrow_schema::{ArrowError, DataType, Fields};
-use bytes::Bytes;
-use std::fs::File;
-use std::io::Cursor;
-use std::path::Path;
+
+/// Arrow files and streams, read one part at a time.
+pub(super) struct Arrow;
+
+impl Format for Arrow {
+    fn begins(&self, head: &[u8]) -> bool {
+        head.starts_with(FILE) || head.starts_with(batches::STREAM)
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["arrow", "arrows", "feather"]
+    }
+
+    fn misnamed(&self) -> &'static str {
+        "this is no Arrow file or stream, for all its name"
+    }
+
+    fn open(
+        &self,
+        file: Stored<'_>,
+        asked: Asked<'_>,
+        budget: &mut Budget,
+    ) -> Result<Opened, String> {
+        let (input, bytes) = file.open()?;
+        open(Batches::open(input, bytes, budget.another())?, bytes, asked)
+    }
+}
 
 /// A column within the fields of records: its name, and the place of the field at each depth.
 struct Leaf {
@@ -28,10 +49,10 @@ struct Leaf {
 
 /// The numeric columns of a table: their names and rows. Times are converted to seconds. A column
 /// of labels, if asked for, comes last, as codes.
-pub(super) fn open(
+fn open(
     mut batches: Batches,
     bytes: u64,
-    (labels, wanted): (Option<&Labels>, &Wanted),
+    Asked { labels, wanted }: Asked<'_>,
 ) -> Result<Opened, String> {
     let mut leaves = Vec::new();
     add_leaves(batches.schema().fields(), &mut Vec::new(), "", &mut leaves);
@@ -136,34 +157,17 @@ fn column(batch: &RecordBatch, fields: &[usize], path: &[usize]) -> Result<Array
     Ok(array)
 }
 
-/// The parts of a file, or of its bytes.
-pub(super) fn batches(
-    path: &Path,
-    held: Option<&Bytes>,
-    budget: Budget,
-) -> Result<(Batches, u64), String> {
-    let text = |error: std::io::Error| error.to_string();
-    let (input, length): (Box<dyn ReadSeek>, u64) = match held {
-        Some(bytes) => (Box::new(Cursor::new(bytes.clone())), bytes.len() as u64),
-        None => {
-            let file = File::open(path).map_err(text)?;
-            let length = file.metadata().map_err(text)?.len();
-            (Box::new(file), length)
-        }
-    };
-    Ok((Batches::open(input, length, budget)?, length))
-}
-
 impl TableReader {
     /// The parts of an Arrow table, read once more from the first one on; `None` for another format.
     ///
     /// # Errors
     /// The problem of the file.
     pub(in crate::data) fn batches(&self) -> Result<Option<Batches>, String> {
-        match self.is_arrow {
-            false => Ok(None),
-            true => batches(&self.path, self.held.as_ref(), self.budget.another())
-                .map(|(found, _)| Some(found)),
+        let file = self.stored();
+        if !file.is(&Arrow)? {
+            return Ok(None);
         }
+        let (input, bytes) = file.open()?;
+        Batches::open(input, bytes, self.budget.another()).map(Some)
     }
 }

@@ -3,10 +3,20 @@
 use super::time::Time;
 use super::{Column, Source, TableReader};
 use crate::data::cells;
-use crate::data::output::Needs;
 use crate::data::positions::Positions;
 use crate::error::{Place, Result};
 use std::ops::Range;
+
+/// What a writer needs of the rows of its source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Needs {
+    /// Nothing: it copies them itself.
+    Nothing,
+    /// Their numbers.
+    Numbers,
+    /// Their text.
+    Text,
+}
 
 /// Rows of a table: how they will be written, and the numbers of the columns asked for.
 #[derive(Default)]

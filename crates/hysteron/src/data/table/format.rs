@@ -1,10 +1,14 @@
 //! Detects the format of a file and opens it with the reader for that format.
 
+use super::Source;
+use super::arrow::Arrow;
 use super::budget::Budget;
 use super::labels::Labels;
+use super::mat::{MatV5, MatV73};
+use super::parquet::Parquet;
+use super::stored::{Asked, Format, Stored};
 use super::text::{self, Text};
 use super::wanted::Wanted;
-use super::{Source, arrow, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};
 use crate::files::{begins_as_json, begins_as_model, contains};
@@ -14,48 +18,47 @@ use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
-/// The format that the first bytes of a file show, or otherwise the ending of its name.
-enum Format {
-    Csv,
-    Parquet,
-    Arrow,
-    MatV5,
-    MatV73,
-}
+/// The formats that store columns. A file of none of them is text.
+const FORMATS: [&dyn Format; 4] = [&Parquet, &Arrow, &MatV5, &MatV73];
 
-impl Format {
-    fn of(path: &Path, head: &[u8]) -> std::result::Result<Self, &'static str> {
-        let named = |ending: &str| {
-            path.extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-        };
-        let begins = |mark: &[u8]| head.starts_with(mark);
-        if let Some(problem) = json(head) {
-            return Err(problem);
-        }
-        if begins(b"PAR1") {
-            Ok(Self::Parquet)
-        } else if begins(arrow::FILE) || begins(arrow::STREAM) {
-            Ok(Self::Arrow)
-        } else if begins(b"MATLAB 5.0") {
-            Ok(Self::MatV5)
-        } else if begins(b"MATLAB 7.3") || begins(b"\x89HDF\r\n\x1a\n") {
-            Ok(Self::MatV73)
-        } else if begins(b"\x1f\x8b") {
-            Err("the file is compressed by gzip: unpack it first")
-        } else if begins(b"PK\x03\x04") || begins(b"\xd0\xcf\x11\xe0") {
-            Err("this is a workbook or an archive: save the table as CSV")
-        } else if begins(b"FEA1") {
-            Err("this is Feather of version 1: write it again as version 2")
-        } else if named("arrow") || named("arrows") || named("feather") {
-            Err("this is no Arrow file or stream, for all its name")
-        } else if named("parquet") {
-            Err("this is no Parquet file, for all its name: it does not begin with `PAR1`")
-        } else if named("mat") {
-            Err("this is no MATLAB file of version 5, 7 or 7.3: save it in MATLAB with `-v7`")
-        } else {
-            Ok(Self::Csv)
-        }
+/// The beginnings of files that hold tables which are not read as they are, and what to do.
+const FOREIGN: [(&[u8], &str); 4] = [
+    (
+        b"\x1f\x8b",
+        "the file is compressed by gzip: unpack it first",
+    ),
+    (b"PK\x03\x04", WORKBOOK),
+    (b"\xd0\xcf\x11\xe0", WORKBOOK),
+    (
+        b"FEA1",
+        "this is Feather of version 1: write it again as version 2",
+    ),
+];
+const WORKBOOK: &str = "this is a workbook or an archive: save the table as CSV";
+
+/// The format that the first bytes of a file show; `None` for text. The ending of its name tells
+/// what was meant where the bytes show nothing.
+fn format_of(
+    path: &Path,
+    head: &[u8],
+) -> std::result::Result<Option<&'static dyn Format>, &'static str> {
+    if let Some(problem) = json(head) {
+        return Err(problem);
+    }
+    if let Some(format) = FORMATS.into_iter().find(|format| format.begins(head)) {
+        return Ok(Some(format));
+    }
+    if let Some((_, problem)) = FOREIGN.iter().find(|(mark, _)| head.starts_with(mark)) {
+        return Err(problem);
+    }
+    let named = |ending: &&str| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+    };
+    let meant = |format: &&dyn Format| format.endings().iter().any(named);
+    match FORMATS.into_iter().find(meant) {
+        Some(format) => Err(format.misnamed()),
+        None => Ok(None),
     }
 }
 
@@ -70,16 +73,9 @@ fn json(head: &[u8]) -> Option<&'static str> {
     })
 }
 
-/// An open file: the names of its columns, and its rows.
-pub(super) struct Opened {
-    pub(super) header: Vec<String>,
-    pub(super) source: Source,
-    pub(super) is_arrow: bool,
-}
-
 /// Opens a file of any format. Returns the names of its columns and its rows. Of a file that is
 /// `held` in memory, `path` is only the name. `labels`, if given, are read as another column, after
-/// those of numbers; of these, a Parquet file is read for the `wanted` ones.
+/// those of numbers; of these, the `wanted` ones are read where the format lets others be left out.
 pub(super) fn open(
     path: &Path,
     held: Option<&Bytes>,
@@ -87,7 +83,7 @@ pub(super) fn open(
     hash: Option<Hash>,
     (labels, wanted): (Option<&Labels>, &Wanted),
     budget: &mut Budget,
-) -> Result<Opened> {
+) -> Result<(Vec<String>, Source)> {
     let failed = |source| Error::File {
         path: path.to_owned(),
         source,
@@ -116,66 +112,23 @@ pub(super) fn open(
     };
     let mut file = Hashing::new(file, hash);
     let (head, whole) = text::head(&mut file).map_err(failed)?;
-    let format = Format::of(path, &head).map_err(|problem| refused(problem.to_owned()))?;
-    let is_arrow = matches!(format, Format::Arrow);
-    let (header, numbers) = match format {
-        Format::Csv => {
+    match format_of(path, &head).map_err(|problem| refused(problem.to_owned()))? {
+        None => {
             let rest = file;
             let source = text::Source { head, whole, rest };
             let (header, text) = Text::open(path, source, repair, budget)?;
-            return Ok(Opened {
-                header,
-                source: Source::Text(Box::new(text)),
-                is_arrow: false,
-            });
+            Ok((header, Source::Text(Box::new(text))))
         }
-        _ if !seekable => {
+        Some(_) if !seekable => {
             let problem = "only CSV can be read from a pipe: name the file";
-            return Err(refused(problem.to_owned()));
+            Err(refused(problem.to_owned()))
         }
-        Format::Parquet => {
-            let opened = match held {
-                Some(bytes) => parquet::open_bytes(bytes, budget.another(), (labels, wanted)),
-                None => parquet::open(path, budget.another(), (labels, wanted)),
-            };
+        Some(format) => {
+            let asked = Asked { labels, wanted };
+            let opened = format.open(Stored { path, held }, asked, budget);
             let opened = opened.map_err(refused)?;
-            (opened.header, opened.numbers.with_times(opened.times))
+            let numbers = opened.numbers.with_times(opened.times);
+            Ok((opened.header, Source::Numbers(numbers)))
         }
-        Format::Arrow => {
-            let (batches, length) =
-                arrow::batches(path, held, budget.another()).map_err(refused)?;
-            let opened = arrow::open(batches, length, (labels, wanted)).map_err(refused)?;
-            (opened.header, opened.numbers.with_times(opened.times))
-        }
-        #[cfg(not(feature = "hdf5"))]
-        Format::MatV73 => {
-            let problem = "this build does not read MATLAB 7.3: save the file in MATLAB with `-v7`";
-            return Err(refused(problem.to_owned()));
-        }
-        #[cfg(feature = "hdf5")]
-        Format::MatV73 => {
-            let variables = mat::v73::read(path, held, budget).map_err(refused)?;
-            mat::table(variables, budget).map_err(refused)?
-        }
-        Format::MatV5 => {
-            // Bytes that are there already are their holder's.
-            let size = match held {
-                Some(_) => 0,
-                None => std::fs::metadata(path).map_err(failed)?.len(),
-            };
-            budget.take(u128::from(size), "the file").map_err(refused)?;
-            let bytes = match held {
-                Some(bytes) => bytes.clone(),
-                None => std::fs::read(path).map_err(failed)?.into(),
-            };
-            let variables = mat::v5::read(&bytes, budget).map_err(refused)?;
-            budget.give_back(u128::from(size));
-            mat::table(variables, budget).map_err(refused)?
-        }
-    };
-    Ok(Opened {
-        header,
-        source: Source::Numbers(numbers),
-        is_arrow,
-    })
+    }
 }

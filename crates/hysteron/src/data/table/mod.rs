@@ -1,6 +1,7 @@
 //! Reads tables row by row through one reader: CSV in its dialects, Parquet, Arrow and MATLAB files.
 //!
-//! `format` detects the format; `text`, `parquet`, `arrow` and `mat` read it. `columns` and `names`
+//! `format` detects the format; `text` reads text, and `parquet`, `arrow` and `mat` what is `stored`
+//! by columns, each behind one trait. `columns` and `names`
 //! find columns, `time` converts times to seconds, and `clock` reads timestamps. `numbers` holds stored columns in memory, within the
 //! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are
 //! the settings, `hashing` computes the file's digest. `quiet` turns panics of libraries into
@@ -21,6 +22,7 @@ mod options;
 mod parquet;
 mod quiet;
 mod remark;
+mod stored;
 mod text;
 mod time;
 mod wanted;
@@ -30,7 +32,7 @@ pub use options::ReadOptions;
 pub use remark::Remark;
 
 pub(in crate::data) use arrow::{Batches, FILE as ARROW_FILE, caught as arrow_caught};
-pub(crate) use block::Block;
+pub(crate) use block::{Block, Needs};
 pub(crate) use clock::is_timestamp;
 pub(crate) use labels::Label;
 
@@ -69,7 +71,6 @@ pub struct TableReader {
     labels: Option<labels::Labels>,
     /// The columns of numbers that are read.
     wanted: Wanted,
-    is_arrow: bool,
     /// An error that comes after the last block.
     late: Option<Error>,
 }
@@ -178,11 +179,7 @@ impl TableReader {
     ) -> Result<Self> {
         let mut budget = Budget::of(memory);
         let wanted = Wanted::default();
-        let format::Opened {
-            header,
-            source,
-            is_arrow,
-        } = format::open(
+        let (header, source) = format::open(
             path,
             held.as_ref(),
             repair,
@@ -201,7 +198,6 @@ impl TableReader {
             time: None,
             labels,
             wanted,
-            is_arrow,
             late: None,
         })
     }
@@ -221,12 +217,11 @@ impl TableReader {
         of_text.iter().chain(&self.remarks)
     }
 
-    /// All pages of this table, of which `file` is opened once more.
-    pub(in crate::data) fn pages(
-        &self,
-        file: &std::fs::File,
-    ) -> std::result::Result<Pages, String> {
-        Pages::open(file, self.budget.another())
+    fn stored(&self) -> stored::Stored<'_> {
+        stored::Stored {
+            path: &self.path,
+            held: self.held.as_ref(),
+        }
     }
 
     pub(crate) fn budget(&mut self) -> &mut Budget {

@@ -1,9 +1,8 @@
 //! Columns of numbers in memory, one row group after another.
 
 use super::Row;
-use super::block::{Block, ROWS};
+use super::block::{Block, Needs, ROWS};
 use crate::data::cells::push_number;
-use crate::data::output::Needs;
 use crate::error::Place;
 
 /// Columns of numbers. A missing number is NaN.

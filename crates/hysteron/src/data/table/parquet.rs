@@ -4,13 +4,12 @@ mod claims;
 mod pages;
 mod thrift;
 
+use super::TableReader;
 use super::budget::Budget;
 use super::labels::Labels;
 use super::numbers::{Group, Numbers};
 use super::quiet;
-use super::wanted::Wanted;
-use bytes::Bytes;
-pub(super) use claims::ReadSeek;
+use super::stored::{Asked, Format, Opened, ReadSeek, Stored};
 use claims::{Claims, Refusal};
 pub(in crate::data) use pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
@@ -22,45 +21,65 @@ use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedF
 use parquet::schema::types::ColumnDescriptor;
 use std::fmt::Display;
 use std::fs::File;
-use std::io::Cursor;
-use std::path::Path;
 
-/// An open file: names, rows, times.
-pub(super) struct Opened {
-    pub(super) header: Vec<String>,
-    /// Columns of times, converted to seconds.
-    pub(super) times: Vec<usize>,
-    pub(super) numbers: Numbers,
+/// The first bytes of a Parquet file.
+const MARK: &[u8] = b"PAR1";
+
+/// Parquet, read one row group at a time.
+pub(super) struct Parquet;
+
+impl Format for Parquet {
+    fn begins(&self, head: &[u8]) -> bool {
+        head.starts_with(MARK)
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["parquet"]
+    }
+
+    fn misnamed(&self) -> &'static str {
+        "this is no Parquet file, for all its name: it does not begin with `PAR1`"
+    }
+
+    fn open(
+        &self,
+        file: Stored<'_>,
+        asked: Asked<'_>,
+        budget: &mut Budget,
+    ) -> Result<Opened, String> {
+        let budget = budget.another();
+        let (second, bytes) = file.open()?;
+        if let Some(held) = file.held {
+            return open(held.clone(), second, bytes, (asked, budget));
+        }
+        let file = File::open(file.path).map_err(|error| error.to_string())?;
+        open(file, second, bytes, (asked, budget))
+    }
 }
 
-/// The numeric columns of a file: their names and rows. Times are converted to seconds. A column of
-/// labels, if asked for, comes last, as codes.
-pub(super) fn open(
-    path: &Path,
-    budget: Budget,
-    columns: (Option<&Labels>, &Wanted),
-) -> Result<Opened, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let length = file.metadata().map_err(|error| error.to_string())?.len();
-    let second = file.try_clone().map_err(|error| error.to_string())?;
-    open_as(file, Box::new(second), length, (budget, columns))
+impl TableReader {
+    /// The file of a Parquet table and all its pages; `None` for another format, and for a table in
+    /// memory.
+    ///
+    /// # Errors
+    /// The problem of the file.
+    pub(in crate::data) fn pages(&self) -> Result<Option<(File, Pages)>, String> {
+        let file = self.stored();
+        if file.held.is_some() || !file.is(&Parquet)? {
+            return Ok(None);
+        }
+        let file = File::open(file.path).map_err(|error| error.to_string())?;
+        let pages = Pages::open(&file, self.budget.another())?;
+        Ok(Some((file, pages)))
+    }
 }
 
-/// As [`open`], for the bytes of a file.
-pub(super) fn open_bytes(
-    bytes: &Bytes,
-    budget: Budget,
-    columns: (Option<&Labels>, &Wanted),
-) -> Result<Opened, String> {
-    let second = Box::new(Cursor::new(bytes.clone()));
-    open_as(bytes.clone(), second, bytes.len() as u64, (budget, columns))
-}
-
-fn open_as(
+/// The columns of a file of which `second` checks the claims before the library reads them.
+fn open(
     file: impl ChunkReader + 'static,
     second: Box<dyn ReadSeek>,
     bytes: u64,
-    (budget, (labels, wanted)): (Budget, (Option<&Labels>, &Wanted)),
+    (Asked { labels, wanted }, budget): (Asked<'_>, Budget),
 ) -> Result<Opened, String> {
     let mut claims = Claims::new(second, bytes, budget);
     claims.check_footer().map_err(refused)?;

@@ -2,8 +2,8 @@
 //! of its parts at the end that is not needed to read it in order.
 
 use crate::data::table::budget::Budget;
-use crate::data::table::parquet::ReadSeek;
 use crate::data::table::quiet;
+use crate::data::table::stored::ReadSeek;
 use arrow_array::{ArrayRef, RecordBatch};
 use arrow_buffer::{Buffer, MutableBuffer};
 use arrow_ipc::convert::try_fb_to_schema;

@@ -3,9 +3,10 @@
 
 use super::thrift::Compact;
 use crate::data::table::budget::Budget;
+use crate::data::table::stored::ReadSeek;
 use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Read, SeekFrom};
 
 const CONTRADICTION: &str = "it contradicts itself";
 
@@ -18,11 +19,6 @@ pub(super) struct Claims {
     length: u64,
     budget: Budget,
 }
-
-/// A file, or bytes in memory.
-pub(in crate::data) trait ReadSeek: Read + Seek + Send {}
-
-impl<T: Read + Seek + Send> ReadSeek for T {}
 
 /// Why a file is refused.
 pub(super) enum Refusal {

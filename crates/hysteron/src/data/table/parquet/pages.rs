@@ -1,8 +1,9 @@
 //! Reads all pages of a Parquet file whose columns are copied as they are stored.
 
-use super::claims::{Claims, ReadSeek};
+use super::claims::Claims;
 use super::{caught, check_claims, refused};
 use crate::data::table::budget::Budget;
+use crate::data::table::stored::ReadSeek;
 use parquet::basic::ConvertedType as C;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
