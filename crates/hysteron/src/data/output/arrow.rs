@@ -2,9 +2,8 @@
 
 use super::added::{Added, AddedCells};
 use super::parquet::{Cells, Kind, PROGRAM};
-use super::spool::distinct;
-use super::table::Sink;
-use super::writer::{RowWriter, Rows};
+use super::sink::Sink;
+use super::writer::{RowWriter, Rows, distinct};
 use crate::data::table::{Batches, Needs, arrow_caught};
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray};
 use arrow_ipc::reader::read_footer_length;

@@ -1,6 +1,6 @@
 //! Writes rows of CSV to a stream, a block at a time.
 
-use super::table::Sink;
+use super::sink::Sink;
 use super::writer::{RowWriter, Rows};
 use crate::data::cells::push_number;
 use crate::data::table::Needs;

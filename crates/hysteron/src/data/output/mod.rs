@@ -13,6 +13,7 @@ mod parquet;
 mod partial;
 mod records;
 mod sign;
+mod sink;
 mod splice;
 mod spool;
 mod table;

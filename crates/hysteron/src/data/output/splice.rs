@@ -3,9 +3,8 @@
 
 use super::added::{Added, AddedCells};
 use super::parquet::{Cells, Kind, field, io_error, properties};
-use super::spool::distinct;
-use super::table::Sink;
-use super::writer::{RowWriter, Rows};
+use super::sink::Sink;
+use super::writer::{RowWriter, Rows, distinct};
 use crate::data::table::{Needs, Pages, caught};
 use parquet::column::writer::ColumnCloseResult;
 use parquet::errors::ParquetError;

@@ -7,13 +7,11 @@
 use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
 use super::parquet::Kind;
-use super::table::Sink;
-use super::writer::{RowWriter, Rows};
+use super::sink::Sink;
+use super::writer::{RowWriter, Rows, distinct};
 use crate::data::table::{Growing, Memory, Needs, Splitter};
 use hysteron_files::bare;
-use std::collections::HashSet;
 use std::fs::File;
-use std::hash::Hash;
 use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::Path;
 
@@ -192,25 +190,6 @@ fn number(cell: &[u8]) -> Option<f64> {
     let padded = digits.len() > 1 && digits.starts_with('0') && !digits.starts_with("0.");
     let exact = !whole || value.abs() < EXACT || value.abs().to_string() == digits;
     (exact && !padded).then_some(value)
-}
-
-/// Refuses two columns with the same name, because readers of Parquet or Arrow could not
-/// distinguish them.
-pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
-    names: impl Iterator<Item = N>,
-) -> io::Result<()> {
-    let mut seen = HashSet::new();
-    for name in names {
-        if let Some(name) = seen.replace(name) {
-            let name = name.as_ref();
-            let text = format!(
-                "two columns are called `{name}`, which readers of such a file could not tell apart: \
-                 write CSV"
-            );
-            return Err(io::Error::other(text));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use super::arrow::ArrowCopy;
 use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
 use super::sign::is_our_table;
+use super::sink::Sink;
 use super::splice::Splice;
 use super::spool::Spool;
 use super::writer::{RowWriter, Rows};
@@ -12,7 +13,7 @@ use crate::data::cells::push_row;
 use crate::data::table::{Block, Growing, Memory, Needs, TableReader};
 use crate::error::{Error, Result};
 use hysteron_files::{AtomicFile, Destination, Own, folder_of};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The path in errors about standard output.
@@ -49,30 +50,6 @@ impl To {
         match self {
             To::Spooled(spool) => spool.as_mut(),
             To::Rows(writer) => writer.as_mut(),
-        }
-    }
-}
-
-pub(super) enum Sink {
-    Stdout(io::Stdout),
-    File(AtomicFile),
-    Memory(Growing),
-}
-
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Sink::Stdout(out) => out.write(bytes),
-            Sink::File(out) => out.write(bytes),
-            Sink::Memory(out) => out.write(bytes),
-        }
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Sink::Stdout(out) => out.flush(),
-            Sink::File(out) => out.flush(),
-            Sink::Memory(_) => Ok(()),
         }
     }
 }

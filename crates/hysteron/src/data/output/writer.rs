@@ -1,8 +1,10 @@
 //! What writes the rows of a table, whatever the format.
 
 use super::added::AddedCells;
-use super::table::Sink;
+use super::sink::Sink;
 use crate::data::table::{Block, Needs};
+use std::collections::HashSet;
+use std::hash::Hash;
 use std::io;
 
 /// Rows of a block from a place on, the cells that are added to them from a place on, and their
@@ -46,4 +48,23 @@ pub(super) trait RowWriter: Send {
     /// # Errors
     /// What kept the end from being written.
     fn finish(self: Box<Self>) -> io::Result<Option<Sink>>;
+}
+
+/// Refuses two columns with the same name, because readers of Parquet or Arrow could not
+/// distinguish them.
+pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
+    names: impl Iterator<Item = N>,
+) -> io::Result<()> {
+    let mut seen = HashSet::new();
+    for name in names {
+        if let Some(name) = seen.replace(name) {
+            let name = name.as_ref();
+            let text = format!(
+                "two columns are called `{name}`, which readers of such a file could not tell apart: \
+                 write CSV"
+            );
+            return Err(io::Error::other(text));
+        }
+    }
+    Ok(())
 }

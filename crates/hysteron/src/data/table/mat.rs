@@ -3,10 +3,12 @@
 mod v5;
 #[cfg(feature = "hdf5")]
 mod v73;
+mod variable;
 
 use super::budget::Budget;
 use super::numbers::Numbers;
 use super::stored::{Asked, Format, Opened, Stored};
+use variable::Variable;
 
 /// MATLAB files of versions 5 and 7.
 pub(super) struct MatV5;
@@ -62,18 +64,6 @@ impl Format for MatV73 {
     fn open(&self, _: Stored<'_>, _: Asked<'_>, _: &mut Budget) -> Result<Opened, String> {
         Err("this build does not read MATLAB 7.3: save the file in MATLAB with `-v7`".into())
     }
-}
-
-/// Largest depth of nested structures that is read.
-const DEEPEST: usize = 16;
-
-/// A numeric variable, with its values column by column. A field of a structure is named
-/// `structure.field`.
-pub(super) struct Variable {
-    pub(super) name: String,
-    pub(super) rows: usize,
-    pub(super) columns: usize,
-    pub(super) values: Vec<f64>,
 }
 
 /// The columns of the variables. A row or column vector is a column under its own name. A matrix

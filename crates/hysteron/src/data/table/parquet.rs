@@ -4,7 +4,6 @@ mod claims;
 mod pages;
 mod thrift;
 
-use super::TableReader;
 use super::budget::Budget;
 use super::labels::Labels;
 use super::numbers::{Group, Numbers};
@@ -54,23 +53,6 @@ impl Format for Parquet {
         }
         let file = File::open(file.path).map_err(|error| error.to_string())?;
         open(file, second, bytes, (asked, budget))
-    }
-}
-
-impl TableReader {
-    /// The file of a Parquet table and all its pages; `None` for another format, and for a table in
-    /// memory.
-    ///
-    /// # Errors
-    /// The problem of the file.
-    pub(in crate::data) fn pages(&self) -> Result<Option<(File, Pages)>, String> {
-        let file = self.stored();
-        if file.held.is_some() || !file.is(&Parquet)? {
-            return Ok(None);
-        }
-        let file = File::open(file.path).map_err(|error| error.to_string())?;
-        let pages = Pages::open(&file, self.budget.another())?;
-        Ok(Some((file, pages)))
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod elements;
 
-use super::{DEEPEST, Variable};
+use super::variable::{DEEPEST, Variable};
 use crate::data::table::budget::Budget;
 use elements::{COMPRESSED, Elements, INT32, MATRIX, UINT32};
 use std::io::Read;

@@ -1,6 +1,6 @@
 //! Reads MATLAB files of version 7.3, which are HDF5 files.
 
-use super::{DEEPEST, Variable};
+use super::variable::{DEEPEST, Variable};
 use crate::data::table::budget::Budget;
 use crate::data::table::quiet::caught;
 use bytes::Bytes;

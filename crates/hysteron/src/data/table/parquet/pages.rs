@@ -1,7 +1,8 @@
 //! Reads all pages of a Parquet file whose columns are copied as they are stored.
 
 use super::claims::Claims;
-use super::{caught, check_claims, refused};
+use super::{Parquet, caught, check_claims, refused};
+use crate::data::table::TableReader;
 use crate::data::table::budget::Budget;
 use crate::data::table::stored::ReadSeek;
 use parquet::basic::ConvertedType as C;
@@ -19,6 +20,23 @@ const RECORDS: usize = 1 << 14;
 pub(in crate::data) struct Pages {
     reader: SerializedFileReader<File>,
     claims: Claims,
+}
+
+impl TableReader {
+    /// The file of a Parquet table and all its pages; `None` for another format, and for a table in
+    /// memory.
+    ///
+    /// # Errors
+    /// The problem of the file.
+    pub(in crate::data) fn pages(&self) -> Result<Option<(File, Pages)>, String> {
+        let file = self.stored();
+        if file.held.is_some() || !file.is(&Parquet)? {
+            return Ok(None);
+        }
+        let file = File::open(file.path).map_err(|error| error.to_string())?;
+        let pages = Pages::open(&file, self.budget.another())?;
+        Ok(Some((file, pages)))
+    }
 }
 
 impl Pages {
