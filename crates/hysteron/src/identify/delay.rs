@@ -8,7 +8,7 @@
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::model::{Delay, Sign, Smooth};
+use crate::model::{Delay, Model, Sign, Smooth};
 use crate::progress::Progress;
 use crate::recording::{Recording, gaps};
 use crate::series::{Turning, mean_and_deviation, usual_tolerance};
@@ -86,26 +86,49 @@ pub(super) fn find(
     }
     let beginning = |recording: &Recording| recording.part(0..recording.len().min(LOOKED_AT));
     let looked_at: Vec<Recording> = recordings.iter().map(beginning).collect();
-    let options = FitOptions {
-        levels: LEVELS,
+    let with_levels = |levels| FitOptions {
+        levels,
         smooth: options.smooth.at_least(SMOOTH),
         bootstrap: 0,
         ..options.clone()
     };
+    let squares = |samples, options| {
+        let shifted = Delay::new(samples, interval)?.of_recordings(&looked_at);
+        squares_left_out(&shifted, options, progress)
+    };
     let (mut errors, mut sign) = ([0.0; LONGEST + 1], Sign::Positive);
+    let coarse = with_levels(LEVELS);
     for (samples, error) in errors.iter_mut().enumerate() {
         progress.tell("delay", samples as f64 / LONGEST as f64)?;
-        let shifted = Delay::new(samples, interval)?.of_recordings(&looked_at);
-        (*error, sign) = squares_left_out(&shifted, &options, progress)?;
+        (*error, sign) = squares(samples, &coarse)?;
     }
-    let best = (0..=LONGEST).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
+    let less = |with: f64, without: f64| with < (1.0 - WORTH).powi(2) * without;
+    let best = (0..LONGEST).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
     let worth = |&samples: &usize| {
-        let least = (1.0 - WORTH).powi(2) * errors[0];
-        samples < LONGEST && errors[samples] < least && goes_on(&looked_at, sign, samples)
+        let longer = errors[samples] < errors[LONGEST];
+        longer && less(errors[samples], errors[0]) && goes_on(&looked_at, sign, samples)
     };
-    match best.filter(worth) {
-        Some(samples) => Delay::new(samples, interval),
-        None => Ok(Delay::NONE),
+    let Some(best) = best.filter(worth) else {
+        return Ok(Delay::NONE);
+    };
+    // What a finer grid resolves is a loop, not a dead time.
+    let fine = with_levels(options.levels.max(LEVELS));
+    match less(squares(best, &fine)?.0, squares(0, &fine)?.0) {
+        true => Delay::new(best, interval),
+        false => Ok(Delay::NONE),
+    }
+}
+
+/// Whether a model with a dead time predicts what was left out clearly better than the one without,
+/// each with the levels and stages that it chose. Where nothing was left out, nothing speaks against
+/// it.
+pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
+    let validation = |model: &Model| model.fit.as_ref()?.validation.clone();
+    match (validation(with), validation(without)) {
+        (Some(with), Some(without)) if with.criterion == without.criterion => with
+            .criterion
+            .is_worth(with.value(), without.value(), WORTH),
+        _ => true,
     }
 }
 
@@ -165,7 +188,6 @@ fn squares_left_out(
 mod tests {
     use super::*;
     use crate::identify::{Fit, Spacing};
-    use crate::model::Model;
     use hysteron_core::{Operator, Plane};
 
     /// Swings of another size each time, and what a model answers `late` samples later.

@@ -349,30 +349,35 @@ impl<'a> Fit<'a> {
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
-        let delay = match self.options.delay {
-            Choice::Fixed(samples) => delay::fixed(samples, recordings)?,
-            Choice::Auto if self.options.asks_after() => Delay::NONE,
-            Choice::Auto if self.body => {
-                // A body and a dead time change places, so what is behind the body tells.
-                let model = self.acting(recordings)?;
-                let behind = recordings.iter().map(|r| model.behind_body(r));
-                let behind = behind.map(|r| Ok(r?.into_owned()));
-                let behind: Vec<Recording> = behind.collect::<Result<_>>()?;
-                match delay::find(&behind, &self.options, self.progress)? {
-                    delay if delay.is_none() => {
-                        let mut model = model;
-                        widen(&mut model, &self.repeats)?;
-                        return Ok(model);
-                    }
-                    delay => delay,
-                }
+        let (mut model, delay) = match self.options.delay {
+            Choice::Auto if !self.options.asks_after() => self.delayed(recordings)?,
+            Choice::Auto => (self.acting(recordings)?, Delay::NONE),
+            Choice::Fixed(samples) => {
+                let delay = delay::fixed(samples, recordings)?;
+                (self.acting(&delay.of_recordings(recordings))?, delay)
             }
-            Choice::Auto => delay::find(recordings, &self.options, self.progress)?,
         };
-        let mut model = self.acting(&delay.of_recordings(recordings))?;
-        let repeats = delay.of_recordings(&self.repeats);
-        widen(&mut model, &repeats)?;
+        widen(&mut model, &delay.of_recordings(&self.repeats))?;
         Ok(model.with_delay(delay))
+    }
+
+    /// The model, and the dead time before it, where the whole model is better with it than without
+    /// it on what was left out. A coarse grid takes a narrow loop for a dead time.
+    fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
+        let at_once = self.acting(recordings)?;
+        // A body and a dead time change places, so what is behind the body tells.
+        let behind = recordings.iter().map(|r| at_once.behind_body(r));
+        let behind = behind.map(|r| Ok(r?.into_owned()));
+        let behind: Vec<Recording> = behind.collect::<Result<_>>()?;
+        let delay = delay::find(&behind, &self.options, self.progress)?;
+        if delay.is_none() {
+            return Ok((at_once, delay));
+        }
+        let late = self.acting(&delay.of_recordings(recordings))?;
+        Ok(match delay::is_worth(&late, &at_once) {
+            true => (late, delay),
+            false => (at_once, Delay::NONE),
+        })
     }
 
     /// The model of recordings whose inputs act at once, but for the repeats.

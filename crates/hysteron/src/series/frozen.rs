@@ -14,8 +14,14 @@ const FAR: f64 = 0.8;
 /// long runs.
 const OFTEN: f64 = 0.5;
 
-/// The samples over which `values` keeps exactly one value while `other` moves far, or for so long
-/// that it may have turned twice, and then goes on elsewhere.
+/// A frozen channel may have noise: so far it stays together, as a share of the usual range.
+const NOISY: f64 = 0.01;
+/// What is noise and no slow answer: the mean squared step, by twice the variance. It is 1 for white
+/// noise and near 0 for a smooth series (von Neumann 1941).
+const ROUGH: f64 = 0.25;
+
+/// The samples over which `values` keeps one value, exactly or but for noise, while `other` moves
+/// far; or exactly, for so long that it may have turned twice, and then goes on elsewhere.
 ///
 /// Frozen are readings of a sensor that lost its contact or of a logger that goes on with the last
 /// value. A series that moves in steps is not frozen between them.
@@ -41,16 +47,73 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         true => Vec::new(),
         false => still,
     };
+    let apart = |run: &Range<usize>, found: &[Range<usize>]| {
+        found
+            .iter()
+            .all(|other| other.end <= run.start || run.end <= other.start)
+    };
+    for run in together(values, NOISY * usual_span(values)) {
+        if moves_far(&run) && is_rough(&values[run.clone()]) && apart(&run, &found) {
+            found.push(run);
+        }
+    }
     let longest = half_a_branch(values);
     for run in held(values, None)
         .into_iter()
         .filter(|run| run.len() > longest)
     {
-        if found.iter().all(|other| !other.contains(&run.start)) {
+        if apart(&run, &found) {
             found.push(run);
         }
     }
     found
+}
+
+/// Runs of samples that stay within a `band`, one after the other, each as long as it can be, but
+/// for the ends that stand outside of its inner readings: there a series comes to a rest, or leaves
+/// it.
+fn together(values: &[f64], band: f64) -> Vec<Range<usize>> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for n in 0..=values.len() {
+        let next = values.get(n).map(|&x| (low.min(x), high.max(x)));
+        match next {
+            Some((l, h)) if h - l <= band => (low, high) = (l, h),
+            _ => {
+                runs.extend(inner(values, start..n));
+                start = n;
+                if let Some(&x) = values.get(n) {
+                    (low, high) = (x, x);
+                }
+            }
+        }
+    }
+    runs
+}
+
+/// The part of a run whose readings are like those of its middle; `None` for a short one.
+fn inner(values: &[f64], run: Range<usize>) -> Option<Range<usize>> {
+    const END: usize = SHORTEST / 4;
+    let middle = run.start + END..run.end.checked_sub(END)?;
+    if run.len() < SHORTEST {
+        return None;
+    }
+    let (low, high) = range(&values[middle.clone()]);
+    let like = |&n: &usize| (low - (high - low)..=high + (high - low)).contains(&values[n]);
+    let start = (0..middle.start).rev().take_while(like).last();
+    let end = (middle.end..values.len()).take_while(like).last();
+    Some(start.unwrap_or(middle.start)..end.map_or(middle.end, |n| n + 1))
+}
+
+/// Whether a series jumps from reading to reading as noise does.
+fn is_rough(values: &[f64]) -> bool {
+    // From the first one on, so that a little noise on a large number is not lost in a sum.
+    let from_first = || values.iter().map(|x| x - values[0]);
+    let mean = from_first().sum::<f64>() / values.len() as f64;
+    let spread: f64 = from_first().map(|x| (x - mean).powi(2)).sum();
+    let steps: f64 = values.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    spread > 0.0 && steps >= 2.0 * ROUGH * spread
 }
 
 /// How far a series rises from a value before, at most, and how far it falls.
@@ -67,6 +130,34 @@ fn rise_and_fall(values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Numbers from -1 to 1 that look random.
+    fn noise(n: usize) -> f64 {
+        let turns = (n as f64 * 12.9898).sin() * 43_758.545_3;
+        2.0 * (turns - turns.floor()) - 1.0
+    }
+
+    #[test]
+    fn a_frozen_channel_with_noise_is_found_and_a_small_answer_is_not() {
+        let input: Vec<f64> = (0..2000).map(|n| (f64::from(n) * 0.02).sin()).collect();
+        for size in [1e-15, 1e-12, 1e-6, 1e-3, 4e-3] {
+            let mut output = input.clone();
+            for (n, y) in output.iter_mut().enumerate() {
+                *y = size * noise(n) + if n < 1200 { *y } else { input[1200] };
+            }
+            let found = frozen(&output, &input);
+            assert_eq!(found.len(), 1, "{size}: {found:?}");
+            assert!(found[0].start <= 1205 && found[0].end == 2000, "{size}");
+            assert_eq!(frozen(&input, &output), vec![], "{size}");
+        }
+        // A weak load: an answer of half a percent, with less noise than that.
+        let weak = |n: usize| match n < 1200 {
+            true => input[n],
+            false => 0.0025 * input[n] + 5e-4 * noise(n),
+        };
+        let weak: Vec<f64> = (0..2000).map(weak).collect();
+        assert_eq!(frozen(&weak, &input), vec![]);
+    }
 
     #[test]
     fn a_frozen_channel_is_found_and_steps_are_not() {
