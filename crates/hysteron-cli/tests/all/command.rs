@@ -298,6 +298,41 @@ fn the_demo_reproduces_the_chapter_on_a_simulated_spring() {
 }
 
 #[test]
+fn time_makes_a_default_fit_no_worse() {
+    let bench = Bench::new();
+    assert_eq!(bench.run("demo -o demo").code, 0);
+    // The same with stamps of whole seconds, of which some come twice.
+    let text = bench.read("demo/recording-1.csv");
+    let whole = text.lines().map(|line| match line.split_once(',') {
+        Some((time, rest)) if line.starts_with(|c: char| c.is_ascii_digit()) => {
+            format!("{},{rest}\n", time.parse::<f64>().unwrap().floor())
+        }
+        _ => format!("{line}\n"),
+    });
+    bench.write("whole.csv", &whole.collect::<String>());
+    let error = |file: &str, time: &str| {
+        let columns = format!("--input temperature --output displacement{time}");
+        let done = bench.run(&format!("fit {file} {columns} -o m.json --force"));
+        assert_eq!(done.code, 0, "{}", done.err);
+        let found = bench.read("m.json");
+        let done = bench.run(&format!(
+            "evaluate m.json demo/recording-2.csv {columns} --json"
+        ));
+        let errors = done.json()["forward"]["nrmse_percent"].as_f64().unwrap();
+        (errors, found)
+    };
+    let (plain, _) = error("demo/recording-1.csv", "");
+    let (timed, model) = error("demo/recording-1.csv", " --time time");
+    // The spring answers at once: what is found besides would be an error of the grid.
+    assert!(!model.contains("\"delay\""), "{model}");
+    // Small differences come from the choice of smoothness.
+    assert!(timed < 1.15 * plain, "{timed} and {plain}");
+    let (whole, model) = error("whole.csv", " --time time --repair");
+    assert!(!model.contains("ring_frequency"), "{model}");
+    assert!(whole < 1.15 * plain, "{whole} and {plain}");
+}
+
+#[test]
 fn wrong_usage_is_code_two() {
     let bench = Bench::fitted();
     for line in [

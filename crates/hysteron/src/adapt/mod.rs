@@ -155,6 +155,7 @@ pub fn adapt(
 ) -> Result<Adapted> {
     let recordings = recordings.as_ref();
     recordings.iter().try_for_each(Recording::check)?;
+    recordings.iter().try_for_each(|r| model.check_units(r))?;
     let recordings = &*model.delay().of_recordings(recordings);
     let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
     if options.learner == Learner::Load {

@@ -1,6 +1,6 @@
 //! Forward and inverse tests of a model on one recording.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::identify::{find_rest, find_start};
 use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State, Surroundings};
 use crate::recording::Recording;
@@ -76,7 +76,7 @@ pub(super) fn keeping(
     keep: fn(Vec<f64>) -> Vec<f64>,
 ) -> Result<Evaluation> {
     recording.check()?;
-    check_units(model, recording)?;
+    model.check_units(recording)?;
     let recording = &*model.delay().of_recording(recording);
     let (begin, estimated_from) = begin(model, recording, start)?;
     let (output_model, clipped) = model.run_over(&mut begin.clone(), recording)?;
@@ -103,40 +103,6 @@ pub(super) fn keeping(
         estimated_from,
         inverse,
     })
-}
-
-/// A recording in another unit than the model's would be compared as if it were in the same one. A
-/// unit that is missing on either side says nothing.
-fn check_units(model: &Model, recording: &Recording) -> Result<()> {
-    let pairs = [
-        ("input", &model.input, &recording.input_quantity),
-        ("output", &model.output, &recording.output_quantity),
-    ];
-    for (what, of_model, of_recording) in pairs {
-        let (Some(expected), Some(found)) = (&of_model.unit, &of_recording.unit) else {
-            continue;
-        };
-        if spelt(expected) != spelt(found) {
-            return Err(Error::Fit(format!(
-                "the {what} of the model is in {expected}, that of the recording in {found}: \
-                 convert the column to {expected}, and name that unit in its header"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// A unit without what people write differently: brackets, blanks, the sign of degrees.
-fn spelt(unit: &str) -> String {
-    let unit = unit.trim().trim_matches(['[', ']', '(', ')']).trim();
-    let unit = unit
-        .replace(['°', '˚', 'º'], "deg")
-        .replace(['µ', 'μ'], "u");
-    match unit.replace(' ', "").as_str() {
-        "C" | "degC" | "Celsius" | "celsius" => "degC".into(),
-        "℃" => "degC".into(),
-        other => other.into(),
-    }
 }
 
 /// The state in which the model begins, and the number of samples from which it was estimated.

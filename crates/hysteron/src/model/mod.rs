@@ -32,6 +32,7 @@ mod start;
 mod state;
 mod summary;
 mod surroundings;
+mod units;
 mod validation;
 mod within;
 

@@ -105,6 +105,11 @@ impl<'a> Judge<'a> {
             Change::Input(_) => all().filter(|n| listed(&samples, n)).collect(),
             Change::Output(_) => all().filter(|n| !listed(&samples, n)).collect(),
         };
+        // Where all that it touches is ignored, it shows in what comes after.
+        let touched = match touched.is_empty() {
+            true => all().collect(),
+            false => touched,
+        };
         // With and without it on the same plane: a wrong input makes it wider, and the model coarser
         // or freer.
         let inner = within(range(&work.input), range(change.input(work)));
@@ -117,16 +122,24 @@ impl<'a> Judge<'a> {
         let here = |distances: &Vec<f64>| mean(touched.iter().map(|n| distances[*n]));
         let everywhere = |distances: &Vec<f64>| mean(all().map(|n| distances[n]));
         let pair = before.as_ref().zip(after.as_ref());
-        let kept = pair.is_some_and(|(before, after)| {
-            here(after) < (1.0 - WORTH) * here(before)
-                && (matches!(change, Change::Output(_))
-                    || everywhere(after) <= (1.0 + WORTH) * everywhere(before))
-        });
+        let better =
+            |(before, after): (&Vec<f64>, &Vec<f64>)| here(after) < (1.0 - WORTH) * here(before);
+        let harms = |(before, after): (&Vec<f64>, &Vec<f64>)| {
+            !matches!(change, Change::Output(_))
+                && everywhere(after) > (1.0 + WORTH) * everywhere(before)
+        };
+        // What is told is what decided.
+        let harms = pair.is_some_and(harms);
+        let told = |distances| match harms {
+            true => everywhere(distances),
+            false => here(distances),
+        };
+        let kept = pair.is_some_and(better) && !harms;
         self.judged.push(Judged {
             step,
             samples: samples.len(),
-            before: before.as_ref().map(here),
-            after: after.as_ref().map(here),
+            before: before.as_ref().map(told),
+            after: after.as_ref().map(told),
             kept,
         });
         if !kept {

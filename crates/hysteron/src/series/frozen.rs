@@ -94,11 +94,11 @@ fn together(values: &[f64], band: f64) -> Vec<Range<usize>> {
 
 /// The part of a run whose readings are like those of its middle; `None` for a short one.
 fn inner(values: &[f64], run: Range<usize>) -> Option<Range<usize>> {
-    const END: usize = SHORTEST / 4;
-    let middle = run.start + END..run.end.checked_sub(END)?;
     if run.len() < SHORTEST {
         return None;
     }
+    let end = run.len() / 4;
+    let middle = run.start + end..run.end - end;
     let (low, high) = range(&values[middle.clone()]);
     let like = |&n: &usize| (low - (high - low)..=high + (high - low)).contains(&values[n]);
     let start = (0..middle.start).rev().take_while(like).last();
@@ -150,6 +150,23 @@ mod tests {
             assert!(found[0].start <= 1205 && found[0].end == 2000, "{size}");
             assert_eq!(frozen(&input, &output), vec![], "{size}");
         }
+        // It comes to a rest slowly.
+        let slowly = |n: usize| f64::from(1200 - n.min(1200) as i32) * 5e-5;
+        let mut output = input.clone();
+        for (n, y) in output.iter_mut().enumerate().skip(1100) {
+            *y = slowly(n) + 1e-9 * noise(n);
+        }
+        let found = frozen(&output, &input);
+        assert!(
+            matches!(
+                found[..],
+                [Range {
+                    start: 1199..=1201,
+                    end: 2000
+                }]
+            ),
+            "{found:?}"
+        );
         // A weak load: an answer of half a percent, with less noise than that.
         let weak = |n: usize| match n < 1200 {
             true => input[n],

@@ -18,5 +18,6 @@ pub use columns::Columns;
 pub(crate) use groups::{Group, Groups};
 pub use others::Others;
 pub use read::Segment;
+pub(in crate::data) use read::quantity;
 pub use repair::{Note, NoteKind, Places, Repair};
 pub(crate) use write::write_all;

@@ -345,7 +345,7 @@ pub(super) fn refuse_one_column(
 }
 
 /// Name and unit of a column that was asked for.
-pub(super) fn quantity(table: &TableReader, asked: &str, at: Column) -> Quantity {
+pub(in crate::data) fn quantity(table: &TableReader, asked: &str, at: Column) -> Quantity {
     // The data of a matrix `[TimeValues DataValues]` have the name of the matrix.
     let own = match table.name(at) {
         own if own.strip_suffix(":2") == Some(asked) => asked,

@@ -55,7 +55,7 @@ pub fn invert_table(
     out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
-    let samples = Samples::new(model, table, what.target, what.around)?;
+    let samples = Samples::new(model, table, (what.target, &model.output), what.around)?;
     let columns = samples.columns.clone();
     let drive = what.drive_range.unwrap_or_else(|| model.drive_range());
     let inner = model.without_body();

@@ -1,10 +1,11 @@
 //! Samples of a model from the rows of a table.
 
 use super::Around;
-use crate::data::recording::Repair;
+use crate::data::recording::{Repair, quantity};
 use crate::data::table::{Block, Column, TableReader};
 use crate::error::{Error, Result};
 use crate::model::{Model, Sample, needs_time, no_load};
+use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
 use std::path::PathBuf;
 
@@ -36,10 +37,11 @@ impl Samples {
     pub(super) fn new(
         model: &Model,
         table: &mut TableReader,
-        value: &str,
+        (name, expected): (&str, &Quantity),
         around: Around<'_>,
     ) -> Result<Self> {
-        let value = table.column(value)?;
+        let value = table.column(name)?;
+        expected.check_unit("model", &quantity(table, name, value))?;
         let timed = model.is_timed();
         let name = match (timed, around.time) {
             (true, None) => return Err(needs_time()),

@@ -37,7 +37,7 @@ pub fn simulate_table(
     out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
-    let samples = Samples::new(model, table, what.input, what.around)?;
+    let samples = Samples::new(model, table, (what.input, &model.input), what.around)?;
     let columns = samples.columns.clone();
     let names = ["output_model", "output_low", "output_high"].map(Added::Numbers);
     let added = if what.band.is_some() { 3 } else { 1 };

@@ -87,6 +87,12 @@ pub(super) fn find(
     let Some(clock) = Clock::new(recordings) else {
         return Ok(None);
     };
+    // The steps of a clock that is coarser than the samples would be taken for a swing.
+    let stands = |time: &[f64]| time.windows(2).any(|pair| pair[1] <= pair[0]);
+    let coarse = |recording: &Recording| recording.time.as_deref().is_some_and(stands);
+    if !asked && recordings.iter().any(coarse) {
+        return Ok(None);
+    }
     let options = FitOptions {
         bootstrap: 0,
         smooth: options.smooth.at_least(SMOOTH),

@@ -207,6 +207,12 @@ impl LoadEntry {
         {
             return Err(fault("load.curves.loads", "there are none".into()));
         }
+        if let Some(curves) = &self.curves
+            && !curves.loads.iter().any(|load| (min..=max).contains(load))
+        {
+            let problem = format!("none of them is within the loads of the model, {min} to {max}");
+            return Err(fault("load.curves.loads", problem));
+        }
         load.curves = self.curves;
         Ok(load)
     }
