@@ -319,6 +319,9 @@ impl<T: Real> Stages<'_, T> {
         S: Memory<Turn<T>>,
     {
         let unbound = self.heated(memory, rates, input);
+        if !(input.is_finite() && unbound.is_finite()) {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
         let temperature = match memory.started {
             true => {
                 model.check(state)?;
@@ -327,9 +330,6 @@ impl<T: Real> Stages<'_, T> {
             }
             false => unbound,
         };
-        if !(input.is_finite() && temperature.is_finite()) {
-            return Err(Error::InputNotFinite { index: 0 });
-        }
         let seen = self
             .axis
             .seen(model.plane(), loaded, state.input(), temperature);

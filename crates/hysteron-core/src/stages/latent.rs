@@ -49,9 +49,12 @@ impl<T: Real> Latent<T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let (plane, here) = (model.plane(), state.branch_position());
+        let (plane, here, total) = (model.plane(), state.branch_position(), model.total());
+        if self.heat == T::ZERO || total == T::ZERO {
+            return unbound;
+        }
         let to = plane.normalise(axis.seen(plane, loaded, state.input(), unbound));
-        if self.heat == T::ZERO || to == here.x {
+        if to == here.x {
             return unbound;
         }
         let rising = to > here.x;
@@ -59,9 +62,9 @@ impl<T: Real> Latent<T> {
             true => Direction::Rising,
             false => Direction::Falling,
         };
-        let per_sum = self.per_sum(model);
+        let taken = |y: T| self.heat * ((y - here.y) / total);
         let degrees = |x| axis.backward(plane, loaded, direction, plane.denormalise(x));
-        let left = |x, y| degrees(x) + per_sum * (y - here.y);
+        let left = |x, y| degrees(x) + taken(y);
         let branch = Branch::find(state, usize::from(!rising), |turn| {
             (left(turn.x, turn.y) >= unbound) == rising
         });
@@ -72,7 +75,7 @@ impl<T: Real> Latent<T> {
         let end = branch.end.min(top);
         if above(end) != rising {
             // Beyond the plane nothing more is bound.
-            return unbound - per_sum * (sum(end) - here.y);
+            return unbound - taken(sum(end));
         }
         let mut piece = match rising {
             true => (branch.start, end),
@@ -108,10 +111,12 @@ impl<T: Real> Latent<T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let plane = model.plane();
-        let here = state.branch_position();
+        let (plane, here, total) = (model.plane(), state.branch_position(), model.total());
+        if self.heat == T::ZERO || total == T::ZERO {
+            return temperature;
+        }
         let to = plane.normalise(axis.seen(plane, loaded, state.input(), temperature));
-        if self.heat == T::ZERO || to == here.x {
+        if to == here.x {
             return temperature;
         }
         let branch = match to > here.x {
@@ -119,16 +124,7 @@ impl<T: Real> Latent<T> {
             false => Branch::find(state, 1, |minimum| minimum.x <= to),
         };
         let sum = branch.began.along(model.grid(), to);
-        temperature + self.per_sum(model) * (sum - here.y)
-    }
-
-    /// Degrees per unit of `Σ μ γ`; 0 for operators without weights.
-    fn per_sum<C: AsRef<[T]>>(self, model: &Model<T, C>) -> T {
-        let total = model.total();
-        match total > T::ZERO {
-            true => self.heat / total,
-            false => T::ZERO,
-        }
+        temperature + self.heat * ((sum - here.y) / total)
     }
 }
 

@@ -360,6 +360,7 @@ fn a_plain_model_does_without_the_stages() {
     let made = c_sampled(&case.model, folder.path(), &other, &case.sampling).unwrap();
     let stages = [
         "body",
+        "latent",
         "load",
         "registration",
         "spacing",
@@ -374,7 +375,7 @@ fn a_plain_model_does_without_the_stages() {
         .map(|file| std::fs::read(file).unwrap())
         .collect();
     assert!(before == after);
-    assert_eq!(made.files.len(), 11);
+    assert_eq!(made.files.len(), 12);
 }
 
 /// A plain model that starts where its fit found it carries its turning points.

@@ -144,6 +144,7 @@ impl Model {
         }
         model.delay = file.delay;
         let listed = listed(file.creep, file.lag, file.stages)?;
+        model.latent = listed.stages().latent.heat;
         model.registration = Registration::of_constants(&listed);
         let behind = listed.stages().behind;
         model.behind = StageConstants::from_stages(&Stages {
