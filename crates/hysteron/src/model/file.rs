@@ -304,9 +304,16 @@ fn hint(stage: &str) -> String {
     if ["offset", "weights"].contains(&stage) {
         return ": outputs are up to 1e140".into();
     }
+    let bound = match stage {
+        "latent" => "; it needs a thermal body, no relays and no weight below zero",
+        _ => "",
+    };
     let mut constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
     match constants.find(|constant| constant.name == stage) {
-        Some(constant) => format!(": {}; {}", constant.meaning, constant.range.words()),
+        Some(constant) => {
+            let words = constant.range.words();
+            format!(": {}; {words}{bound}", constant.meaning)
+        }
         None => String::new(),
     }
 }

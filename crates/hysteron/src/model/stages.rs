@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::{CreepTerm, FirstOrder, Model, Registration, StageConstants};
-use hysteron_core::{Axis, Direction, Latent, Load, Stages};
+use hysteron_core::{Axis, Direction, Error as CoreError, Latent, Load, Stages};
 
 impl Model {
     /// The constants of the stages around the operators, as the core takes them. The offset is that
@@ -59,6 +59,11 @@ impl Model {
 
     /// Checks the constants of all stages.
     pub(crate) fn check_stages(&self) -> Result<()> {
+        let negative = self.load.as_ref().is_some_and(|load| load.is_negative());
+        if self.latent != 0.0 && negative {
+            // At one load or another, as the core refuses it for weights that are always the same.
+            return Err(CoreError::Stage { stage: "latent" }.into());
+        }
         Ok(self.stages().check(&self.operators().core)?)
     }
 
