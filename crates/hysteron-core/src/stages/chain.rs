@@ -230,6 +230,7 @@ impl<T: Real> Stages<'_, T> {
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.body.is_none()
+            && self.latent == Latent::NONE
             && self.axis == Axis::PLAIN
             && !self.behind.there().any(|(_, there)| there)
     }

@@ -130,10 +130,6 @@ pub(super) fn find(
         _ => Ok(f64::INFINITY),
     };
     let taus = [unbound.body.tau_heating, unbound.body.tau_cooling].map(f64::ln);
-    let without = match told_apart {
-        true => least(taus, |[heating, cooling]| value([heating, cooling, 0.0]))?.1,
-        false => least([taus[0]], |[tau]| value([tau, tau, 0.0]))?.1,
-    };
     // What is bound takes its time as well, which the time constants alone had to explain. So one
     // may do where two were told apart.
     let shorter = taus.map(|tau| tau - FIRST.ln_1p());
@@ -146,6 +142,14 @@ pub(super) fn find(
             (point, with) = (two, apart);
         }
     }
+    // Without heat from both starts: another time constant alone may do as much.
+    let starts = [taus, [point[0], point[1]]].into_iter();
+    let without = starts.map(|taus| match told_apart {
+        true => Ok(least(taus, |[heating, cooling]| value([heating, cooling, 0.0]))?.1),
+        false => Ok(least([taus[0]], |[tau]| value([tau, tau, 0.0]))?.1),
+    });
+    let without = without.collect::<Result<Vec<f64>>>()?;
+    let without = without.into_iter().fold(f64::INFINITY, f64::min);
     let percent = 100.0 / (high - low);
     let report = Report {
         without: percent * without,
