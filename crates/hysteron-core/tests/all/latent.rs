@@ -114,14 +114,14 @@ fn hostile<T: Real>(
         let size = number(10_f64.powf(rng.random_range(-3.0..6.0)));
         let sign = if rng.random() { T::ONE } else { -T::ONE };
         let drive = body.hold(model.plane().min() + sign * size);
-        let dt = Some(number(rng.random_range(0.0..2.0)));
+        let dt = number(rng.random_range(0.0..2.0));
         let load = Some(number(rng.random_range(-4.0..8.0)));
         if n % 3 == 2 {
             let (off, on) = model.output_range();
             let share = number(rng.random_range(-0.1..1.1));
             let target = Target::new(off + share * (on - off));
             let wanted = Wanted {
-                dt,
+                dt: Some(dt),
                 load,
                 ..target.into()
             };
@@ -134,13 +134,13 @@ fn hostile<T: Real>(
         let (before, was) = (memory.temperature(), memory.is_started());
         let sample = Sample {
             input: drive,
-            dt,
+            dt: Some(dt),
             load,
         };
         stages
             .step(&model, &mut state, &mut memory, sample)
             .unwrap();
-        let unbound = body.step(before, drive, body.decay(dt.unwrap_or(T::ZERO)));
+        let unbound = body.step(before, drive, body.decay(dt));
         let found = memory.temperature();
         assert!(found.is_finite());
         // Without a load nothing but the drive moves the operators: what binds only holds back.
