@@ -287,6 +287,21 @@ fn a_model_at_one_load_keeps_its_body() {
     assert!(light.inverse().is_ok());
 }
 
+/// Where nothing moves there is no heat to find, and the fit is that of a body alone.
+#[test]
+fn a_still_output_binds_no_heat() {
+    let (time, drive) = drive();
+    let mut recording = Recording::new(drive, vec![1.5; time.len()]).unwrap();
+    recording.time = Some(time);
+    let run = |fit: Fit<'_>| {
+        fit.run(std::slice::from_ref(&recording))
+            .map(|m| m.to_json())
+    };
+    let fit = Fit::from(FitOptions::plain());
+    let auto = run(fit.clone().thermal(hysteron::Auto));
+    assert_eq!(auto.ok(), run(fit.thermal(true)).ok());
+}
+
 /// A model file keeps the heat that is bound, and refuses it where nothing can bind it.
 #[test]
 fn heat_that_is_bound_is_in_the_file() {

@@ -117,6 +117,9 @@ pub(super) fn find(
     let sign = search.model(unbound, None)?.sign().factor();
     let (cold, hot) = search.temperatures(unbound.body);
     let (low, high) = search.outputs();
+    if low == high || cold == hot {
+        return Ok(None);
+    }
     let of = |[heating, cooling, share]: [f64; 3]| Heated {
         body: FirstOrder {
             tau_heating: heating.exp(),
