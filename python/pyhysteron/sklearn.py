@@ -114,7 +114,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         lag: float | Literal["auto", "off"] = "off",
         dynamics: Literal["auto", "off", "lag", "ring"] = "auto",
         curve: int | Literal["auto", "off"] = "off",
-        thermal: Literal["first-order", True, False] | None = None,
+        thermal: Literal["first-order", "auto", True, False] | None = None,
     ) -> None:
         self.levels = levels
         self.range = range

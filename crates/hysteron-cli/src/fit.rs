@@ -183,7 +183,7 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
         .smooth(args.smooth)
         .start(args.start)
         .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
-        .thermal(args.thermal.is_some());
+        .thermal(args.thermal.map_or(hysteron::Thermal::None, Into::into));
     match &args.prior {
         Some(models) => Ok(fit.prior(prior_of_fleet(models)?)),
         None => Ok(fit),

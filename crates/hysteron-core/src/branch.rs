@@ -13,6 +13,18 @@ pub struct Turn<T> {
     pub(crate) y: T,
 }
 
+impl<T: Real> Turn<T> {
+    /// `Σ μ γ` at `to`, on the branch that begins here.
+    pub(crate) fn along(&self, grid: Grid<'_, T>, to: T) -> T {
+        let [here, there] = [self.x, to].map(|x| Split::new(x, grid.levels));
+        if to > self.x {
+            self.y + grid.everett(there, here)
+        } else {
+            self.y - grid.everett(here, there)
+        }
+    }
+}
+
 /// Index of the first turning point of every history: the input at the bottom of the plane.
 ///
 /// The elements before it are sentinels with infinite positions. There are enough of them that
@@ -117,21 +129,13 @@ impl<T: Real> Position<T> {
 
     /// Computes the outputs of another table at all turning points and at the present position.
     pub(crate) fn rebase(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>) {
-        let split = |x| Split::new(x, grid.levels);
-        let along = |from: Turn<T>, to: T| {
-            if to > from.x {
-                from.y + grid.everett(split(to), split(from.x))
-            } else {
-                from.y - grid.everett(split(from.x), split(to))
-            }
-        };
         let mut last = turns[START];
         for turn in &mut turns[START + 1..=self.top] {
-            turn.y = along(last, turn.x);
+            turn.y = last.along(grid, turn.x);
             last = *turn;
         }
         self.began_y = last.y;
-        self.y = along(last, self.x);
+        self.y = last.along(grid, self.x);
     }
 
     /// Follows `next` and the `rest` in one direction until the input turns. Returns the position

@@ -60,9 +60,9 @@ pub use plane::{Clipped, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use solution::{Solution, Status};
 pub use stages::{
-    Axis, Behind, Body, Constant, Creep, Curve, Decay, Declared, Lag, Load, Loaded, MAX_CREEP,
-    MAX_PARTS, Parts, Placed, RATE_NUMBERS, Range, Rates, Registration, Ring, STATE_NUMBERS,
-    Sample, StageState, Stages, Unit, Wanted, bernstein, mix,
+    Axis, Behind, Body, Constant, Creep, Curve, Decay, Declared, Lag, Latent, Load, Loaded,
+    MAX_CREEP, MAX_PARTS, Parts, Placed, RATE_NUMBERS, Range, Rates, Registration, Ring,
+    STATE_NUMBERS, Sample, StageState, Stages, Unit, Wanted, bernstein, mix,
 };
 pub use state::{State, turn_capacity};
 pub use target::{Direction, Target};

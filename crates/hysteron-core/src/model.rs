@@ -318,6 +318,13 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         &self.table.as_ref()[self.base..]
     }
 
+    pub(crate) fn grid(&self) -> Grid<'_, T> {
+        Grid {
+            table: self.table(),
+            levels: self.plane.levels(),
+        }
+    }
+
     /// `Σ μ_ij`, the sum of all weights.
     #[must_use]
     pub fn total(&self) -> T {

@@ -19,12 +19,12 @@ pub(crate) struct Branch<T> {
 }
 
 impl<T: Real> Branch<T> {
-    /// Finds the branch that ends at the innermost extreme whose output meets the goal.
+    /// Finds the branch that ends at the innermost extreme that meets the goal.
     ///
     /// Extremes of one kind are nested: `kind` is 0 for the maxima, which have even indices, and 1
     /// for the minima, which have odd ones. All extremes further in are passed. The state does not
     /// change.
-    pub(crate) fn find<S>(state: &State<T, S>, kind: usize, met: impl Fn(T) -> bool) -> Self
+    pub(crate) fn find<S>(state: &State<T, S>, kind: usize, met: impl Fn(&Turn<T>) -> bool) -> Self
     where
         S: Memory<Turn<T>>,
     {
@@ -36,7 +36,7 @@ impl<T: Real> Branch<T> {
         // The outermost extreme, with index `kind`, is the end of the plane. It counts as met.
         let count = (turns.len() - 1 - kind) / 2;
         let at = |inner: usize| 2 * (count + 1 - inner) + kind;
-        let passed = first_true(1, count, |n| met(turns[at(n)].y));
+        let passed = first_true(1, count, |n| met(&turns[at(n)]));
         let end = passed.map_or(kind, at);
         Self {
             began: turns.get(end + 1).copied().unwrap_or(here),

@@ -6,12 +6,6 @@
 
 /* ---- The plane ---- */
 
-/* The normalised position of an input: k at level k, 0 at one step below the lowest level. */
-static hys_real normalise(const hys_model *model, hys_real input)
-{
-    return hys_clamp((input - model->min) * model->per_unit + ONE, ZERO, model->top);
-}
-
 /* The highest level at or below an input, 0 for none. The levels decide, because the position is
  * rounded. */
 static size_t level_at_or_below(const hys_model *model, hys_real input)

@@ -18,7 +18,7 @@ enum { MOST_CREEP = 4 };
 #define LITTLE ((hys_real)1 / (hys_real)128)
 
 /* Whether the code has a stage; those around the axis have the numbers behind these. */
-enum { LOAD = 4, REGISTRATION = 5, SPACING = 6 };
+enum { LOAD = 4, REGISTRATION = 5, SPACING = 6, LATENT = 7 };
 #define HAS(stage) ((HYS_STAGES >> (stage) & 1u) != 0u)
 
 /* And whether an actuator has it: a macro, so that compilers for size leave out the others too. */

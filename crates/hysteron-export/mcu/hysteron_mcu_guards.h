@@ -35,8 +35,6 @@
 #define BEFORE 4u
 #define ROUNDING 1024u
 
-#define HALF (ONE / number(2u))
-
 static hys_real size_of(hys_real x)
 {
     return hys_max(x, -x);

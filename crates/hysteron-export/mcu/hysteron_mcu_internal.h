@@ -19,6 +19,7 @@ typedef char hys_float_is_float[FLT_EVAL_METHOD == 0 || sizeof(hys_real) == size
 
 #define ZERO ((hys_real)0)
 #define ONE ((hys_real)1)
+#define HALF ((hys_real)0.5)
 
 /* Index of the first turning point of every history: the input at the bottom of the plane. It is a
  * minimum, as are all turning points with an odd index. The elements before it are sentinels with
@@ -71,6 +72,12 @@ static inline hys_real denormalise(const hys_model *model, hys_real x)
 static inline hys_real level(const hys_model *model, size_t k)
 {
     return denormalise(model, number(k));
+}
+
+/* The normalised position of an input: k at level k, 0 at one step below the lowest level. */
+static inline hys_real normalise(const hys_model *model, hys_real input)
+{
+    return hys_clamp((input - model->min) * model->per_unit + ONE, ZERO, model->top);
 }
 
 /* A normalised position as its grid cell and the fraction of that cell, 0 <= part <= 1. */

@@ -1,8 +1,6 @@
 /* The inverse step. Applications that only run models forward do not need this file. */
 #include "hysteron_mcu_internal.h"
 
-#define HALF ((hys_real)0.5)
-
 /* A goal for the output on a way: to reach `value`, or with `beyond` to go beyond it. `limit` is
  * the value with the rounding error allowed. */
 typedef struct {

@@ -1,5 +1,5 @@
 /* The forward step of an actuator with stages, and its state. */
-#include "hysteron_mcu_stages_internal.h"
+#include "hysteron_mcu_latent.h"
 
 static int begin(const hys_actuator *actuator, hys_actuator_state *state, const hys_model *model,
                  hys_turn *turns, size_t count)
@@ -131,7 +131,9 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
         code = place(state, load);
     }
     if (code == HYS_OK) {
-        hys_real seen = seen_at(actuator, &at, state->operators.input, temperature);
+        hys_real seen;
+        temperature = bound(state, &at, temperature);
+        seen = seen_at(actuator, &at, state->operators.input, temperature);
         code = hys_step(&state->operators, seen, &sum);
     }
     if (code != HYS_OK) {

@@ -27,13 +27,13 @@
 #include "hysteron_mcu.h"
 
 /* Layout of hys_actuator. Models that were exported for another layout do not compile. */
-#define HYS_STAGES_LAYOUT 5
+#define HYS_STAGES_LAYOUT 6
 
 #define HYS_MOST_PARTS 8
 
 /* The stages that the code has, a bit for each: all of them, or those of one model where flash is
  * scarce. */
-#define HYS_STAGES 127u
+#define HYS_STAGES 255u
 
 /* Stages behind the operators: how many there are, numbers that they remember, and factors. */
 #define HYS_BEHIND 4
@@ -98,6 +98,7 @@ typedef struct {
     hys_real steepest;           /* steepest slope of registration and spacing; 1 without them */
     hys_real ambient, gain;      /* body: temperature at rest without drive, and per unit of it */
     hys_real heating, cooling;   /* body: e^(-dt/tau) */
+    hys_real latent;             /* degrees that the heat of a whole stroke is; 0 for none */
     hys_real factors[HYS_BEHIND_FACTORS]; /* of a sample, of the stages behind the operators */
     hys_real slopes[HYS_BEHIND]; /* the steepest slope at rest of each of them */
     hys_real steepest_behind;    /* and of all of them */

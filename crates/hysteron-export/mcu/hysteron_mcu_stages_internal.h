@@ -163,22 +163,28 @@ static inline hys_real heated(const hys_actuator_state *state, hys_real drive)
     return rest + (state->temperature - rest) * factor;
 }
 
+/* The operators' input at a position on the axis. */
+static inline hys_real placed(const hys_actuator *actuator, hys_real position)
+{
+    const hys_model *model = actuator->operators;
+    const hys_real *corners = HAS(SPACING) ? actuator->spacing.numbers : NULL;
+    size_t k;
+    if (corners == NULL) {
+        return position;
+    }
+    k = piece(corners, model->levels + 1u, position);
+    return line(position, corners[k], corners[k + 1u], level(model, k), level(model, k + 1u));
+}
+
 /* The operators' input to which a temperature leads them from below, or from above. */
 static inline hys_real led_to(const hys_actuator *actuator, const loaded_axis *at, int rising,
                               hys_real temperature)
 {
-    const hys_model *model = actuator->operators;
-    const hys_real *corners = HAS(SPACING) ? actuator->spacing.numbers : NULL;
     hys_real effective = at->scale * temperature - at->shift;
-    size_t k;
     if (HAS(REGISTRATION) && actuator->knots.numbers != NULL) {
         effective = registered(actuator, at, rising, 0, effective);
     }
-    if (corners == NULL) {
-        return effective;
-    }
-    k = piece(corners, model->levels + 1u, effective);
-    return line(effective, corners[k], corners[k + 1u], level(model, k), level(model, k + 1u));
+    return placed(actuator, effective);
 }
 
 /* The operators' input at a temperature, where it was `held` before. */
@@ -190,6 +196,36 @@ static inline hys_real seen_at(const hys_actuator *actuator, const loaded_axis *
         return least;
     }
     return hys_max(least, hys_min(held, led_to(actuator, at, 0, temperature)));
+}
+
+/* The temperature that leads the operators to an input, from below or from above. */
+static inline hys_real leading_to(const hys_actuator *actuator, const loaded_axis *at, int rising,
+                                  hys_real input)
+{
+    const hys_model *model = actuator->operators;
+    const hys_real *corners = HAS(SPACING) ? actuator->spacing.numbers : NULL;
+    hys_real effective = input;
+    if (corners != NULL) {
+        size_t k = 0u, end = model->levels - 1u;
+        hys_real from, to;
+        while (k < end) { /* at most log2(K) + 1 iterations */
+            size_t middle = k + (end - k + 1u) / 2u;
+            if (level(model, middle) <= input) {
+                k = middle;
+            } else {
+                end = middle - 1u;
+            }
+        }
+        from = level(model, k);
+        to = level(model, k + 1u);
+        effective = input == to
+            ? corners[k + 1u]
+            : corners[k] + (input - from) * ((corners[k + 1u] - corners[k]) / (to - from));
+    }
+    if (HAS(REGISTRATION) && actuator->knots.numbers != NULL) {
+        effective = registered(actuator, at, rising, 1, effective);
+    }
+    return (effective + at->shift) / at->scale;
 }
 
 #endif

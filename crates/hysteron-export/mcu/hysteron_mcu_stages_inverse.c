@@ -1,6 +1,6 @@
 /* The inverse step of an actuator with stages. Each stage is inverted for the present sample, from
  * the last to the first. Applications that only run models forward do not need this file. */
-#include "hysteron_mcu_stages_internal.h"
+#include "hysteron_mcu_latent.h"
 
 static const hys_real EIGHT_EPSILON = (hys_real)8 * HYS_EPSILON;
 static const hys_real THOUSANDTH = (hys_real)1 / (hys_real)1000;
@@ -39,36 +39,6 @@ static int solve(hys_state *state, hys_real aim, int heading, hys_real tolerance
     state->y = y;
     state->input = last;
     return code;
-}
-
-/* The temperature that leads the operators to an input, from below or from above. */
-static hys_real leading_to(const hys_actuator *actuator, const loaded_axis *at, int rising,
-                           hys_real input)
-{
-    const hys_model *model = actuator->operators;
-    const hys_real *corners = HAS(SPACING) ? actuator->spacing.numbers : NULL;
-    hys_real effective = input;
-    if (corners != NULL) {
-        size_t k = 0u, end = model->levels - 1u;
-        hys_real from, to;
-        while (k < end) { /* at most log2(K) + 1 iterations */
-            size_t middle = k + (end - k + 1u) / 2u;
-            if (level(model, middle) <= input) {
-                k = middle;
-            } else {
-                end = middle - 1u;
-            }
-        }
-        from = level(model, k);
-        to = level(model, k + 1u);
-        effective = input == to
-            ? corners[k + 1u]
-            : corners[k] + (input - from) * ((corners[k + 1u] - corners[k]) / (to - from));
-    }
-    if (HAS(REGISTRATION) && actuator->knots.numbers != NULL) {
-        effective = registered(actuator, at, rising, 1, effective);
-    }
-    return (effective + at->shift) / at->scale;
 }
 
 /* The operators' input, the temperature, and where the output is to go next. */
@@ -147,11 +117,12 @@ static hys_real drive_to(const hys_actuator_state *state, const loaded_axis *at,
                          const from_here *from, hys_real input, hys_real *size)
 {
     const hys_actuator *actuator = state->actuator;
-    hys_real temperature = temperature_at(actuator, at, from, input);
+    hys_real temperature = unbound(state, at, temperature_at(actuator, at, from, input));
     hys_real drive = drive_for(state, temperature);
     *size = magnitude(temperature);
     if (actuator->body) {
-        *size = *size + (magnitude(actuator->ambient) + magnitude(actuator->gain * drive));
+        *size = *size
+            + (magnitude(actuator->ambient) + magnitude(actuator->gain * drive) + actuator->latent);
     }
     return drive;
 }

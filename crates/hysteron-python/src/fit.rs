@@ -10,7 +10,7 @@ use crate::prior::WeightPrior;
 use crate::progress::with_progress;
 use hysteron::{
     Auto, Candidates, Choice, Dynamics, Fit, FitOptions, HeldOut, HoldOut, LoadLaw, Smooth, Solver,
-    Spacing,
+    Spacing, Thermal,
 };
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
@@ -97,10 +97,11 @@ use pyo3::types::{PyDict, PySequence, PyString};
 ///     ``'branches:20%'`` (a share up to 33 %, spread over the recording), ``'rows:100-200'``
 ///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. A list may hold one such
 ///     text beside recordings. `FitSummary.hold_out` has the errors there.
-/// thermal : {None, 'first-order', True, False}
+/// thermal : {None, 'first-order', 'auto', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
-///     True. The input has to be proportional to the power, as a duty cycle is: give the square of
-///     a current or a voltage. Each sample of it was held since the sample before. Needs `time`.
+///     True. 'auto' adds heat that the operators bind where that predicts what is left out. The
+///     input has to be proportional to the power, as a duty cycle is: give the square of a current
+///     or a voltage. Each sample of it was held since the sample before. Needs `time`.
 /// prior : WeightPrior, optional
 ///     What other actuators of the same kind tell; see `pyhysteron.fleet`. Plane, spacing, operator
 ///     and sign are then theirs, and there is neither smoothness nor a bootstrap.
@@ -166,7 +167,7 @@ pub(crate) fn fit(
         "progress",
     ];
     let mut fit = fit_with("fit", &names, (bootstrap, prior), options)?;
-    let thermal = thermal.map_or(Ok(false), thermal_of)?;
+    let thermal = thermal.map_or(Ok(Thermal::None), thermal_of)?;
     let recordings = recordings_of(recording, output, time, load)?;
     let repeats = repeats.map(|repeats| recordings_alone("repeats", repeats));
     let hold_out = hold_out.map(hold_out_of).transpose()?;
@@ -477,13 +478,17 @@ pub(crate) fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
     Ok(HoldOut::together(words.pop(), recordings).unwrap_or(nothing))
 }
 
-/// Whether a thermal body is to be identified.
-pub(crate) fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+/// What thermal body is to be identified.
+pub(crate) fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<Thermal> {
     match value.extract::<bool>() {
-        Ok(body) => Ok(body),
+        Ok(body) => Ok(body.into()),
         Err(_) => {
-            let name: String = named("thermal", "'first-order' or True", value)?;
-            choice("thermal", &name, &[("first-order", true)])
+            let name: String = named("thermal", "'first-order', 'auto' or True", value)?;
+            let names = [
+                ("first-order", Thermal::FirstOrder),
+                ("auto", Thermal::Auto),
+            ];
+            choice("thermal", &name, &names)
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::integer::Integer;
 use crate::model::Model;
 use crate::prior::WeightPrior;
 use crate::progress::with_progress;
-use hysteron::{Columns, Destination, FleetChoice, FleetOptions, ReadOptions, Repair};
+use hysteron::{Columns, Destination, FleetChoice, FleetOptions, ReadOptions, Repair, Thermal};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashSet;
@@ -113,7 +113,7 @@ pub(crate) fn fit_fleet<'py>(
         "progress",
     ];
     let fit = fit_with("fit_fleet", &names, (bootstrap, prior), options)?
-        .thermal(thermal.map_or(Ok(false), thermal_of)?);
+        .thermal(thermal.map_or(Ok(Thermal::None), thermal_of)?);
     let columns = Columns {
         time,
         load,

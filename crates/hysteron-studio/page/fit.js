@@ -10,7 +10,7 @@ const FIRST = ["levels", "smooth", "spacing", "start"];
 const WORDS = /** @type {Record<string, string[]>} */ ({
   spacing: ["auto", "uniform"], start: ["auto", "off", "on", "rest", "unknown"], operator: ["mkp", "kp", "relay"], solver: ["nnls", "ols"],
   sign: ["", "positive", "negative"], robust: ["auto", "off"], load_law: ["auto", "shift", "weights"],
-  dynamics: ["auto", "off", "lag", "ring"], thermal: ["", "first-order"],
+  dynamics: ["auto", "off", "lag", "ring"], thermal: ["", "first-order", "auto"],
 });
 
 /**

@@ -83,8 +83,8 @@ pub use hysteron_core::{
 pub use hysteron_files::Destination;
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
-    FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, WeightPrior, advice, cross_validate,
-    excitation, left_out, plane_of, usual_start, way_against_input,
+    FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, advice,
+    cross_validate, excitation, left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,

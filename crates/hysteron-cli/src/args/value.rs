@@ -184,6 +184,17 @@ impl RunStart {
 pub(crate) enum Thermal {
     /// One heat capacity, with a time constant for heating and one for cooling
     FirstOrder,
+    /// The same, and heat that the transformation binds, where that predicts what is left out
+    Auto,
+}
+
+impl From<Thermal> for hysteron::Thermal {
+    fn from(thermal: Thermal) -> Self {
+        match thermal {
+            Thermal::FirstOrder => Self::FirstOrder,
+            Thermal::Auto => Self::Auto,
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -32,7 +32,9 @@ pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> Stri
             .map(|found| choice_line(model, fit, found)),
     );
     lines.extend(outliers_line(fit, model));
-    lines.extend(model.thermal.as_ref().map(thermal_line));
+    let bare = model.latent() == 0.0;
+    lines.extend(model.thermal.as_ref().map(|body| thermal_line(body, bare)));
+    lines.extend(latent_line(model));
     lines.extend(delay_line(model));
     lines.extend(load_line(model));
     lines.extend(after_line(model, args));
@@ -259,9 +261,25 @@ fn start_line(fit: &FitSummary) -> Option<String> {
     ))
 }
 
-fn thermal_line(body: &FirstOrder) -> String {
+/// What the transformation binds.
+fn latent_line(model: &Model) -> Option<String> {
+    let latent = Some(model.latent()).filter(|latent| *latent > 0.0)?;
+    let tried = model.fit.as_ref()?.other.get("thermal")?.get("latent")?;
+    let [without, with] = ["without", "with"].map(|name| tried.get(name)?.as_f64());
+    Some(format!(
+        "the transformation binds heat: a whole stroke would warm the body by {} more; error on \
+         what was left out {} %, without it {} %",
+        text::number(latent),
+        text::number(with?),
+        text::number(without?),
+    ))
+}
+
+/// The time constants. Where no heat is bound, drives of one shape may hide that there are two.
+fn thermal_line(body: &FirstOrder, bare: bool) -> String {
     let [heating, cooling] = [body.tau_heating, body.tau_cooling].map(text::number);
     match body.tau_heating == body.tau_cooling {
+        true if !bare => format!("thermal body: time constant {heating} s"),
         true => format!(
             "thermal body: time constant {heating} s; heating and cooling are not told apart, \
              which takes drives of different shape, such as a ramp and a step"

@@ -309,7 +309,7 @@ fn time_makes_a_default_fit_no_worse() {
         }
         _ => format!("{line}\n"),
     });
-    bench.write("whole.csv", &whole.collect::<String>());
+    std::fs::write(bench.path("whole.csv"), whole.collect::<String>()).unwrap();
     let error = |file: &str, time: &str| {
         let columns = format!("--input temperature --output displacement{time}");
         let done = bench.run(&format!("fit {file} {columns} -o m.json --force"));

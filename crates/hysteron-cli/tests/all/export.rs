@@ -145,7 +145,7 @@ fn a_model_with_a_thermal_body() {
     assert_eq!(said["stages"], serde_json::json!(["body"]));
     assert_eq!(
         (&said["dt"], said["files"].as_array().unwrap().len()),
-        (&0.1.into(), 11)
+        (&0.1.into(), 12)
     );
     let source = fs::read_to_string(folder.path().join("mcu/wire.c")).unwrap();
     assert!(source.contains(".drive_max = 80.0f"), "{source}");

@@ -4,7 +4,7 @@
 //! branch, the way goes on along an enclosing branch, which [`Branch::find`] selects.
 
 use crate::branch::Turn;
-use crate::everett::{Grid, Split, table_index};
+use crate::everett::{Split, table_index};
 use crate::inverse::Inverse;
 use crate::memory::Memory;
 use crate::operator::Operator;
@@ -20,7 +20,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         S: Memory<Turn<T>>,
     {
         let plane = self.model.plane();
-        let branch = Branch::find(state, 0, |maximum| goal.met_rising(maximum));
+        let branch = Branch::find(state, 0, |maximum| goal.met_rising(maximum.y));
         let x = self.climb(branch.began.x, branch.start, goal.shifted(branch.began.y));
         let x = x.clamp(branch.start, branch.end);
         if self.model.operator() != Operator::Relay {
@@ -46,7 +46,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         S: Memory<Turn<T>>,
     {
         let plane = self.model.plane();
-        let branch = Branch::find(state, 1, |minimum| goal.met_falling(minimum));
+        let branch = Branch::find(state, 1, |minimum| goal.met_falling(minimum.y));
         let x = self.descend(branch.began.x, branch.start, goal.mirrored(branch.began.y));
         let x = x.clamp(branch.end, branch.start);
         if self.model.operator() != Operator::Relay {
@@ -68,12 +68,8 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
 
     /// `e(max, min)` between two normalised positions, `min ≤ max`.
     fn everett(&self, max: T, min: T) -> T {
-        let levels = self.model.plane().levels();
-        let grid = Grid {
-            table: self.model.table(),
-            levels,
-        };
-        grid.everett(Split::new(max, levels), Split::new(min, levels))
+        let grid = self.model.grid();
+        grid.everett(Split::new(max, grid.levels), Split::new(min, grid.levels))
     }
 
     /// The first `x` from `start` up at which `e(x, min)` meets `goal`; `K` if there is none.

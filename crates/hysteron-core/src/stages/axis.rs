@@ -163,9 +163,14 @@ impl<T: Real> Axis<'_, T> {
             None => effective,
             Some(curve) => curve.forward(effective),
         };
+        self.placed(plane, effective)
+    }
+
+    /// The input of the operators at a position on the axis.
+    pub(crate) fn placed(&self, plane: &Plane<T>, position: T) -> T {
         match self.spacing {
-            [] => effective,
-            corners => between(corners, |k| plane.level(k), effective),
+            [] => position,
+            corners => between(corners, |k| plane.level(k), position),
         }
     }
 

@@ -5,11 +5,13 @@ use crate::error::Error;
 use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::{Model, Output};
+use crate::operator::Operator;
 use crate::scalar::Real;
 use crate::stages::axis::Axis;
 use crate::stages::behind::{self, Behind};
 use crate::stages::body::Body;
 use crate::stages::constant::{Constant, Constants, Declared, Range};
+use crate::stages::latent::Latent;
 use crate::stages::loaded::Loaded;
 use crate::stages::state::{Rates, Sample, StageState};
 use crate::state::State;
@@ -39,6 +41,8 @@ use crate::state::State;
 pub struct Stages<'a, T> {
     /// From the drive to the temperature; `None` where the input is the temperature itself.
     pub body: Option<Body<T>>,
+    /// Heat that the operators bind; none without a body.
+    pub latent: Latent<T>,
     /// Load, registration and spacing.
     pub axis: Axis<'a, T>,
     /// The stages behind the operators.
@@ -54,6 +58,7 @@ impl<'a, T: Real> Stages<'a, T> {
     pub fn declared() -> impl Iterator<Item = &'static Declared> {
         <Option<Body<T>> as Constants<T>>::DECLARED
             .iter()
+            .chain(<Latent<T> as Constants<T>>::DECLARED)
             .chain(<Axis<'_, T> as Constants<T>>::DECLARED)
             .chain(Behind::<T>::declared())
     }
@@ -69,7 +74,8 @@ impl<'a, T: Real> Stages<'a, T> {
     /// assert_eq!(lag.map(|(_, numbers)| numbers), Some(&[0.5][..]));
     /// ```
     pub fn constants(&self) -> impl Iterator<Item = (&'static Constant, &[T])> {
-        let lists = self.body.lists().chain(self.axis.lists());
+        let in_front = self.body.lists().chain(self.latent.lists());
+        let lists = in_front.chain(self.axis.lists());
         let constants = Self::declared().flat_map(|stage| stage.constants);
         constants.zip(lists.chain(self.behind.lists()))
     }
@@ -106,6 +112,7 @@ impl<'a, T: Real> Stages<'a, T> {
         let fault = |stage| Error::Stage { stage };
         Ok(Self {
             body: Option::of_lists(&mut next).ok_or(fault("body"))?,
+            latent: Latent::of_lists(&mut next).ok_or(fault("latent"))?,
             axis: Axis::of_lists(&mut next).ok_or(fault("load"))?,
             behind: Behind::of_lists(&mut next).map_err(fault)?,
             ..Self::NONE
@@ -117,6 +124,7 @@ impl<T: Real> Stages<'_, T> {
     /// No stages: the output is the operators' sum.
     pub const NONE: Self = Stages {
         body: None,
+        latent: Latent::NONE,
         axis: Axis::PLAIN,
         behind: Behind::NONE,
         offset: T::ZERO,
@@ -137,6 +145,12 @@ impl<T: Real> Stages<'_, T> {
             constants.find(|(constant, numbers)| !within(constant.range, numbers))
         {
             return fault(constant.name);
+        }
+        // A relay binds its heat at once, and weights below zero bind it while they switch off: no
+        // temperature, or more than one, may balance it.
+        let steady = model.operator() != Operator::Relay && model.negative_weights().is_none();
+        if self.latent != Latent::NONE && !(steady && self.body.is_some()) {
+            return fault("latent");
         }
         let fits = self
             .axis
@@ -216,6 +230,7 @@ impl<T: Real> Stages<'_, T> {
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.body.is_none()
+            && self.latent == Latent::NONE
             && self.axis == Axis::PLAIN
             && !self.behind.there().any(|(_, there)| there)
     }
@@ -304,10 +319,18 @@ impl<T: Real> Stages<'_, T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let temperature = self.heated(memory, rates, input);
-        if !(input.is_finite() && temperature.is_finite()) {
+        let unbound = self.heated(memory, rates, input);
+        if !(input.is_finite() && unbound.is_finite()) {
             return Err(Error::InputNotFinite { index: 0 });
         }
+        let temperature = match memory.started {
+            true => {
+                model.check(state)?;
+                let axis = (&self.axis, loaded);
+                self.latent.bound(model, state, axis, unbound)
+            }
+            false => unbound,
+        };
         let seen = self
             .axis
             .seen(model.plane(), loaded, state.input(), temperature);
@@ -324,7 +347,7 @@ impl<T: Real> Stages<'_, T> {
         })
     }
 
-    /// The temperature after a step with this input.
+    /// The temperature after a step with this input, if it binds no heat.
     pub(crate) fn heated(&self, memory: &StageState<T>, rates: &Rates<T>, input: T) -> T {
         match self.body {
             None => input,

@@ -73,6 +73,8 @@ pub enum Range {
     /// A number in the unit of an input, a load or an output. Its square and products with factors
     /// stay numbers, because it is no larger than [`Real::LARGEST`].
     Size,
+    /// As [`Range::Size`], from 0 on.
+    Amount,
     /// A slope, which is divided by as well: neither it nor its inverse is too large.
     Slope,
     /// A part of the output: from 0 to a million. `float` has 2²³ parts of a number, so beyond a
@@ -105,6 +107,7 @@ impl Range {
         let within = |low: T, high: T| value >= low && value <= high;
         match self {
             Self::Size => within(-T::LARGEST, T::LARGEST),
+            Self::Amount => within(T::ZERO, T::LARGEST),
             Self::Slope => within(T::ONE / T::LARGEST, T::LARGEST),
             Self::Share => within(T::ZERO, factor),
             Self::Factor => within(T::ONE / factor, factor),
@@ -127,6 +130,7 @@ impl Range {
     pub fn words(self) -> &'static str {
         match self {
             Self::Size => "numbers up to 1e140",
+            Self::Amount => "numbers from 0 to 1e140",
             Self::Slope => "numbers from 1e-140 to 1e140",
             Self::Share => "numbers from 0 to 1e6",
             Self::Factor => "numbers from 1e-6 to 1e6",

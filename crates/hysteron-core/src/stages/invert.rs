@@ -139,6 +139,7 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
+        model.check(state)?;
         let range = model.output_range();
         let aim = self.aim(memory, rates, loaded, target, range);
         let solution = match aim.output.is_finite() {
@@ -160,8 +161,15 @@ impl<T: Real> Stages<'_, T> {
         let place = |aim: T| {
             let temperature = self.axis.towards(plane, loaded, held, heading, aim);
             let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
-            let input = self.drive(memory, rates, wanted, temperature);
-            (input, self.size(temperature, input))
+            let unbound = match memory.started {
+                true => {
+                    let axis = (&self.axis, loaded);
+                    self.latent.unbound(model, state, axis, temperature)
+                }
+                false => temperature,
+            };
+            let input = self.drive(memory, rates, wanted, unbound);
+            (input, self.size(unbound, input))
         };
         let (mut input, mut size) = place(solution.input);
         if model.operator() == Operator::Relay {
@@ -262,12 +270,12 @@ impl<T: Real> Stages<'_, T> {
     fn size(&self, temperature: T, drive: T) -> T {
         let magnitude = |v: T| v.max(-v);
         let body = self.body.map_or(T::ZERO, |body| {
-            magnitude(body.ambient) + magnitude(body.gain * drive)
+            magnitude(body.ambient) + magnitude(body.gain * drive) + self.latent.heat
         });
         magnitude(temperature) + body
     }
 
-    /// The drive for a temperature, within its range.
+    /// The drive for a temperature that is reached if no heat is bound, within its range.
     fn drive(
         &self,
         memory: &StageState<T>,

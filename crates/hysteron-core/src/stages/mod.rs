@@ -6,6 +6,7 @@
 //! ```
 //!
 //! - [`Body`]: first-order heating and cooling, from the drive to the temperature.
+//! - [`Latent`]: heat that the operators bind, so that the temperature lags behind.
 //! - [`Axis`]: the load shifts the temperature axis; the spacing places the levels.
 //! - [`Registration`]: at which temperature each threshold is passed, up and down.
 //! - [`Load`]: what the load does to axis, stroke and offset.
@@ -25,6 +26,7 @@ mod creep;
 mod curve;
 mod invert;
 mod lag;
+mod latent;
 mod loaded;
 mod mix;
 mod parts;
@@ -43,6 +45,7 @@ pub use creep::{Creep, MAX_CREEP};
 pub use curve::Curve;
 pub use invert::Wanted;
 pub use lag::Lag;
+pub use latent::Latent;
 pub use loaded::Loaded;
 pub use mix::mix;
 pub use parts::{MAX_PARTS, Parts, Placed, bernstein};

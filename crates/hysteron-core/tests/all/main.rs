@@ -12,6 +12,7 @@ mod estimator;
 mod gate;
 mod guards;
 mod inverse;
+mod latent;
 mod least_squares;
 mod level;
 mod parts;

@@ -63,7 +63,7 @@ fn outputs_of_the_chain_are_met_by_its_inverse() {
         let plane = plane(&mut rng, k);
         let weights = weights(&mut rng, k);
         let (model, mut there) = build(plane, operator, &weights);
-        let mut constants = Constants::random(&mut rng, &plane);
+        let mut constants = Constants::random(&mut rng, &plane).of(operator);
         // What a ring gives can need a swing beyond the operators afterwards.
         constants.ring = None;
         // Relays jump past a target that is off by rounding: body and spacing alone, whose outputs
@@ -206,6 +206,7 @@ impl Units {
                     cooling * self.time,
                 ]
             }),
+            latent: constants.latent * self.temperature,
             loads: all(&constants.loads, self.load),
             shifts: all(&constants.shifts, self.effective),
             scales: all(&constants.scales, self.effective / self.temperature),
@@ -238,7 +239,7 @@ fn the_units_do_not_matter() {
         let k = levels(&mut rng, 12);
         let plane = plane(&mut rng, k);
         let weights = weights(&mut rng, k);
-        let constants = Constants::random(&mut rng, &plane);
+        let constants = Constants::random(&mut rng, &plane).of(operator);
         let units = Units::random(&mut rng, &constants);
         let scaled = units.of(&constants);
         let other_plane = Plane::new(plane.min() * units.input, plane.max() * units.input, k);

@@ -5,7 +5,7 @@ use crate::common;
 
 use common::{OPERATORS, Owned, build, dense, inputs, levels, plane, rng, weights};
 use hysteron_core::{
-    Axis, Behind, Body, Creep, Error, Lag, Load, Model, Operator, Outcome, Plane, Sample,
+    Axis, Behind, Body, Creep, Error, Lag, Latent, Load, Model, Operator, Outcome, Plane, Sample,
     ShiftEstimator, ShiftOptions, StageState, Stages, State, Target, Turn, Wanted,
 };
 use rand::RngExt;
@@ -264,6 +264,7 @@ impl Parts {
         };
         Stages {
             body: self.body,
+            latent: Latent::NONE,
             axis: Axis {
                 load: if loaded { load } else { Load::NONE },
                 spacing: &self.spacing,

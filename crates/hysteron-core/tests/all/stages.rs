@@ -7,8 +7,8 @@ use common::stages::{Constants, Owned};
 use common::{OPERATORS, build, build_f32, inputs, levels, plane, rng, weights};
 use hysteron_core::{
     Axis, Body, Constant, Definition, Direction, Error, Load, MAX_CREEP, Model, Operator, Plane,
-    Range, Real, Registration, Sample, StageState, Stages, Status, Target, Turn, Wanted, mix,
-    table_len, turn_capacity,
+    Range, Real, Registration, Sample, StageState, Stages, Status, Target, Turn, Wanted, mix, mkp,
+    operators, table_len, turn_capacity,
 };
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -83,7 +83,6 @@ fn the_chain_is_its_formulas() {
                     rest + (last - rest) * (-dt / tau).exp()
                 }
             };
-            temperature = Some(t);
             let load = match constants.loads.as_slice() {
                 [] => 0.0,
                 loads => load.clamp(loads[0], loads[loads.len() - 1]),
@@ -93,17 +92,30 @@ fn the_chain_is_its_formulas() {
                 ([one], _) => *one,
                 (values, _) => line(&constants.loads, values, load),
             };
-            let effective = of(&constants.scales, 1.0) * t - of(&constants.shifts, 0.0);
-            let [up, down] = [&constants.up, &constants.down].map(|rows| {
-                let rows = if rows.is_empty() { &constants.up } else { rows };
-                let mut x = registered(&constants, rows, load, effective);
-                if !constants.spacing.is_empty() {
-                    let levels: Vec<f64> = (0..=k).map(|n| plane.level(n)).collect();
-                    x = line(&constants.spacing, &levels, x);
+            let held = x;
+            let seen = |t: f64| {
+                let effective = of(&constants.scales, 1.0) * t - of(&constants.shifts, 0.0);
+                let [up, down] = [&constants.up, &constants.down].map(|rows| {
+                    let rows = if rows.is_empty() { &constants.up } else { rows };
+                    let mut x = registered(&constants, rows, load, effective);
+                    if !constants.spacing.is_empty() {
+                        let levels: Vec<f64> = (0..=k).map(|n| plane.level(n)).collect();
+                        x = line(&constants.spacing, &levels, x);
+                    }
+                    x
+                });
+                f64::max(up, f64::min(held, down))
+            };
+            let t = match temperature {
+                None => t,
+                Some(_) => {
+                    let share = |t| share_of(&plane, &weights, plain.states(), seen(t));
+                    let before = share_held(&weights, plain.states());
+                    balanced(t, constants.latent, |t| share(t) - before)
                 }
-                x
-            });
-            x = f64::max(up, f64::min(x, down));
+            };
+            temperature = Some(t);
+            x = seen(t);
             let mut h = of(&constants.gains, 1.0) * plain.step(x).unwrap();
             if !constants.sums.is_empty() {
                 h = line(&constants.sums, &constants.outputs, h);
@@ -151,6 +163,38 @@ fn the_chain_is_its_formulas() {
             );
         }
     }
+}
+
+/// `Σ μ γ / Σ μ` of operators in these states.
+fn share_held(weights: &[f64], states: &[f64]) -> f64 {
+    let sum: f64 = weights
+        .iter()
+        .zip(states)
+        .map(|(mu, gamma)| mu * gamma)
+        .sum();
+    let total: f64 = weights.iter().sum();
+    if total > 0.0 { sum / total } else { 0.0 }
+}
+
+/// The same after they moved to the input `x`.
+fn share_of(plane: &Plane<f64>, weights: &[f64], states: &[f64], x: f64) -> f64 {
+    let x = plane.normalise(x);
+    let moved = operators(plane.levels()).zip(states);
+    let moved: Vec<f64> = moved.map(|((i, j), gamma)| mkp(*gamma, x, i, j)).collect();
+    share_held(weights, &moved)
+}
+
+/// The `T` with `T + λ h(T) = unbound`, for `h` from −1 to 1 that does not fall: by halves.
+fn balanced(unbound: f64, latent: f64, h: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (unbound - latent, unbound + latent);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        match middle + latent * h(middle) < unbound {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    high
 }
 
 /// The position on the axis at an effective temperature: between the knots linear, beyond them the
@@ -300,7 +344,7 @@ fn a_target_said_to_be_met_is_met_through_all_stages() {
         let k = levels(&mut rng, 30);
         let plane = plane(&mut rng, k);
         let weights = weights(&mut rng, k);
-        let constants = Constants::random(&mut rng, &plane);
+        let constants = Constants::random(&mut rng, &plane).of(operator);
         let single = seed % 2 == 0;
         let (ok, not) = if single {
             let case = build(plane, operator, &weights);
@@ -525,6 +569,7 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
 fn ends(range: Range) -> (Vec<f64>, Vec<f64>) {
     let (mut fine, mut wrong) = match range {
         Range::Size => (vec![-1e140, 0.0, 1e140], vec![-1.1e140, 1.1e140]),
+        Range::Amount => (vec![0.0, 1e140], vec![-1e-9, 1.1e140]),
         Range::Slope => (vec![1e-140, 1e140], vec![-1.0, 0.0, 0.9e-140, 1.1e140]),
         Range::Share => (vec![0.0, 1e6], vec![-1e-9, 1.1e6]),
         Range::Factor => (vec![1e-6, 1e6], vec![-1.0, 0.0, 0.9e-6, 1.1e6]),
@@ -544,7 +589,7 @@ fn whole() -> (Lists, Model<f64, [f64; table_len(2)]>) {
     let model = Model::new(plane, Operator::Mkp, &[1.0; 3], [0.0; table_len(2)]).unwrap();
     let list = |constant: &Constant| match constant.name {
         "ambient" => vec![0.0],
-        "gain" | "tau_heating" | "tau_cooling" => vec![1.0],
+        "gain" | "tau_heating" | "tau_cooling" | "latent" => vec![1.0],
         "loads" => vec![1.0, 2.0],
         "shifts" | "offsets" => vec![0.0, 0.5],
         "spacing" => vec![0.0, 1.0, 3.0],
@@ -618,6 +663,7 @@ fn lists_that_do_not_fit_each_other_are_refused_by_name() {
         refused(name, &[], "body");
         refused(name, &[1.0, 2.0], "body");
     }
+    refused("latent", &[1.0, 2.0], "latent");
     refused("lag", &[1.0, 2.0], "lag");
     for name in ["ring_frequency", "ring_damping"] {
         refused(name, &[], "ring");

@@ -1,7 +1,7 @@
 //! Random stages around the operators.
 #![allow(clippy::panic)]
 
-use hysteron_core::{Plane, Real, Stages};
+use hysteron_core::{Operator, Plane, Real, Stages};
 use rand::RngExt;
 use rand::rngs::StdRng;
 
@@ -9,6 +9,7 @@ use rand::rngs::StdRng;
 #[derive(Debug, Clone)]
 pub struct Constants {
     pub body: Option<[f64; 4]>,
+    pub latent: f64,
     pub loads: Vec<f64>,
     pub shifts: Vec<f64>,
     pub scales: Vec<f64>,
@@ -100,6 +101,9 @@ impl Constants {
             let damping = 10_f64.powf(rng.random_range(-4.0..0.2)).min(1.0);
             [10_f64.powf(rng.random_range(-2.0..1.0)), damping]
         });
+        // Up to many times the range of the levels: then a stroke is an affair of heat alone.
+        let latent = span * 10_f64.powf(rng.random_range(-3.0..1.5));
+        let binds = rng.random();
         let (spaced, scaled, gained) = (rng.random(), rng.random(), rng.random());
         let corners = plane.levels() + 1;
         let loads = ascending(rng, count, -3.0, 10.0);
@@ -112,10 +116,15 @@ impl Constants {
             ascending(rng, knots, -1.0, 8.0),
         );
         let [knots, up, down] = registration(rng, (plane.bottom(), span), count);
+        let body = rng
+            .random::<bool>()
+            .then(|| [plane.bottom(), span * body[1], body[2], body[3]]);
         Self {
-            body: rng
-                .random::<bool>()
-                .then(|| [plane.bottom(), span * body[1], body[2], body[3]]),
+            body,
+            latent: match body.is_some() && binds {
+                true => latent,
+                false => 0.0,
+            },
             loads,
             shifts,
             scales: if scaled { scales } else { Vec::new() },
@@ -136,6 +145,14 @@ impl Constants {
         }
     }
 
+    /// Those that a model of this operator can have: relays bind no heat.
+    pub fn of(mut self, operator: Operator) -> Self {
+        if operator == Operator::Relay {
+            self.latent = 0.0;
+        }
+        self
+    }
+
     /// The numbers of the constant with this name.
     fn list(&self, name: &str) -> &[f64] {
         let of_body = |k: usize| self.body.as_ref().map_or(&[][..], |body| &body[k..=k]);
@@ -144,6 +161,7 @@ impl Constants {
             "gain" => of_body(1),
             "tau_heating" => of_body(2),
             "tau_cooling" => of_body(3),
+            "latent" => std::slice::from_ref(&self.latent),
             "loads" => &self.loads,
             "shifts" => &self.shifts,
             "scales" => &self.scales,

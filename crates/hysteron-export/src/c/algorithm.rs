@@ -71,7 +71,7 @@ pub(super) const CONTROL_STAGES: [(&str, &str); 1] = [(
 )];
 
 /// The same for models with stages.
-pub(super) const STAGES: [(&str, &str); 5] = [
+pub(super) const STAGES: [(&str, &str); 6] = [
     (
         "hysteron_mcu_stages.h",
         include_str!("../../mcu/hysteron_mcu_stages.h"),
@@ -92,10 +92,14 @@ pub(super) const STAGES: [(&str, &str); 5] = [
         "hysteron_mcu_stages_internal.h",
         include_str!("../../mcu/hysteron_mcu_stages_internal.h"),
     ),
+    (
+        "hysteron_mcu_latent.h",
+        include_str!("../../mcu/hysteron_mcu_latent.h"),
+    ),
 ];
 
 /// Stages that the code may go without, by their bits in `HYS_STAGES`.
-const BITS: [&str; 7] = [
+const BITS: [&str; 8] = [
     "curve",
     "creep",
     "lag",
@@ -103,6 +107,7 @@ const BITS: [&str; 7] = [
     "load",
     "registration",
     "spacing",
+    "latent",
 ];
 
 /// A text of the algorithm with the code of these stages alone.

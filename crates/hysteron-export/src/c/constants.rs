@@ -137,7 +137,7 @@ impl<T: Number> Constants<T> {
                 {
                     let lists = 1 + staged.arrays().count();
                     let core = staged.core();
-                    let numbers = 9 + RATE_NUMBERS + core.behind.slopes().count();
+                    let numbers = 10 + RATE_NUMBERS + core.behind.slopes().count();
                     aligned(aligned((3 + 2 * lists) * word) + numbers * T::BYTES + 3)
                 } + staged
                     .parts

@@ -155,7 +155,8 @@ impl Axis {
         let wanted = (corners + shift) / least;
         let (low, high) = sampling.drive.unwrap_or_else(|| model.drive_range());
         let (driven, heated) = stages.body.map_or((0.0, 0.0), |body| {
-            let driven = body.ambient.abs() + body.gain * magnitude([low, high]);
+            let driven =
+                body.ambient.abs() + body.gain * magnitude([low, high]) + stages.latent.heat;
             (driven, magnitude([body.rest(low), body.rest(high)]))
         });
         Self {

@@ -131,7 +131,7 @@ pub(super) fn actuator<T: Number>(
     text
 }
 
-fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static str, T); 11] {
+fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static str, T); 12] {
     let single = |name: &str| staged.constants.get(name).first().copied();
     let (low, high) = staged.drive.unwrap_or((T::ZERO, T::ZERO));
     let start = constants.start.as_ref().map(|(_, input)| *input);
@@ -142,6 +142,7 @@ fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static
         ("gain", single("gain").unwrap_or(T::ZERO)),
         ("heating", staged.rates[0]),
         ("cooling", staged.rates[1]),
+        ("latent", single("latent").unwrap_or(T::ZERO)),
         ("steepest_behind", staged.gain),
         ("size_behind", staged.size),
         ("offset", constants.offset),

@@ -130,9 +130,10 @@ impl<T: Number> Staged<T> {
     }
 
     /// The constants that C has as arrays: those that are lists. Time constants and frequencies act
-    /// through factors alone, and those of the body are single numbers.
+    /// through factors alone, and those of the body and its heat are single
+    /// numbers.
     pub(super) fn arrays(&self) -> impl Iterator<Item = (&'static str, &[T])> {
-        let single = |name: &str| ["ambient", "gain"].contains(&name);
+        let single = |name: &str| ["ambient", "gain", "latent"].contains(&name);
         self.constants
             .iter()
             .filter(move |(constant, _)| !single(constant.name) && !constant.range.is_timed())

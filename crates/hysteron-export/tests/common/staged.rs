@@ -130,6 +130,10 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
             "kind": "first-order", "ambient": ambient, "gain": gain,
             "tau_heating": tau(rng), "tau_cooling": tau(rng),
         });
+        if operator != Operator::Relay && coin(rng) {
+            file["version"] = 3.into();
+            file["stages"] = json!({"latent": [width * 10f64.powf(rng.random_range(-2.0..0.5))]});
+        }
     }
     if coin(rng) {
         let terms = rng.random_range(1..=4);
@@ -142,10 +146,8 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
     if coin(rng) {
         let knots = rng.random_range(2..7);
         file["version"] = 3.into();
-        file["stages"] = json!({
-            "curve_sums": sorted(rng, knots, -1.0, 9.0),
-            "curve_outputs": sorted(rng, knots, 2.0, 30.0),
-        });
+        file["stages"]["curve_sums"] = sorted(rng, knots, -1.0, 9.0).into();
+        file["stages"]["curve_outputs"] = sorted(rng, knots, 2.0, 30.0).into();
     }
     if coin(rng) {
         let loads = file["load"]["curves"]["loads"]
@@ -176,7 +178,11 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
         let points: Vec<f64> = state.turning_points().collect();
         file["start"] = json!({"turning_points": points, "input": state.input()});
     }
-    let model = Model::from_json(&file.to_string()).unwrap();
+    let model = Model::from_json(&file.to_string()).unwrap_or_else(|_| {
+        // Weights below zero bind no heat.
+        file["stages"].as_object_mut().unwrap().remove("latent");
+        Model::from_json(&file.to_string()).unwrap()
+    });
     let limited = !model.is_plain() && rng.random_bool(0.6);
     let sampling = CSampling {
         dt: model.is_timed().then_some(dt),

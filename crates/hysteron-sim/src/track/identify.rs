@@ -3,7 +3,7 @@
 
 use super::{Reference, Scenario};
 use hysteron::control::{Controller, Scheme};
-use hysteron::{Choice, DesignOptions, Rates, design};
+use hysteron::{Auto, Choice, DesignOptions, Rates, design};
 use hysteron::{Fit, FitOptions, Model, Plane, Recording, Result};
 
 /// How many triangles the experiment of a wire has, and its steps as shares of the drive's range.
@@ -87,7 +87,7 @@ fn with_body(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
         delay: Choice::Auto,
         ..FitOptions::plain()
     })
-    .thermal(true)
+    .thermal(Auto)
     .run(&recordings)?;
     let [drive, _, output] = scenario.plant.quantities();
     (model.input, model.output) = (drive, output);

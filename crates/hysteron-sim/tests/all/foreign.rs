@@ -10,7 +10,7 @@ fn rmse(found: &Comparison, kind: Kind, window: &str) -> f64 {
 }
 
 #[test]
-fn what_learns_makes_up_for_heat_that_the_model_does_not_know() {
+fn what_learns_makes_up_for_changes_of_a_wire_that_binds_heat() {
     let mut scenario = Scenario::load("latent-wire").unwrap();
     scenario.seeds = 1;
     scenario.controllers = vec![Kind::InverseAnticipate, Kind::AdaptiveAnticipate];

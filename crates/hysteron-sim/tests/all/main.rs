@@ -4,6 +4,7 @@
 #[path = "../loops/mod.rs"]
 mod loops;
 
+mod bound_heat;
 mod comparison;
 mod control;
 mod faults;

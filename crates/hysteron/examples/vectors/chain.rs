@@ -106,21 +106,20 @@ impl<'m> Chain<'m> {
 
     /// The outputs for samples of the drive, from the first one on.
     pub fn forward(mut self, samples: &[Sample]) -> Result<Vec<f64>> {
-        let mut temperatures = Vec::new();
-        let mut last = None;
+        let (mut temperatures, mut seen) = (Vec::new(), Vec::new());
+        let mut search = Search::new(&self.parts[0].0)?;
+        let (mut last, mut held) = (None, f64::NEG_INFINITY);
         for sample in samples {
-            let temperature = self.heated(last, sample.value, sample.dt);
+            let loaded = self.loaded(sample.load);
+            search.weigh(&self.at(sample.load)?)?;
+            let unbound = self.heated(last, sample.value, sample.dt);
+            let temperature = self.bound(&search, &loaded, (held, last), unbound);
+            held = self.seen(&loaded, held, temperature);
+            search.travel(held)?;
             last = Some(temperature);
             temperatures.push(temperature);
+            seen.push(held);
         }
-        let mut held = f64::NEG_INFINITY;
-        let seen = temperatures.iter().zip(samples);
-        let seen: Vec<f64> = seen
-            .map(|(&temperature, sample)| {
-                held = self.seen(&self.loaded(sample.load), held, temperature);
-                held
-            })
-            .collect();
         let sums = self
             .parts
             .iter()
@@ -203,9 +202,14 @@ impl<'m> Chain<'m> {
                 _ => last.unwrap_or(0.0).max(by(false)).min(by(true)),
             }
         };
-        let drive = self.drive(aim, temperature);
+        let unbound = match last {
+            None => temperature,
+            Some(_) => temperature + self.taken(search, &loaded, held, temperature),
+        };
+        let drive = self.drive(aim, unbound);
 
-        let temperature = self.heated(last, drive, dt);
+        let unbound = self.heated(last, drive, dt);
+        let temperature = self.bound(search, &loaded, (held, last), unbound);
         search.travel(self.seen(&loaded, held, temperature))?;
         let after = self.settled(loaded.gain * search.output(), dt);
         let settled = after.swung[0];
@@ -261,6 +265,33 @@ impl<'m> Chain<'m> {
             Some(last) if rest > last => rest + (last - rest) * (-dt / body.tau_heating).exp(),
             Some(last) => rest + (last - rest) * (-dt / body.tau_cooling).exp(),
         }
+    }
+
+    /// The heat that is bound between here and a temperature, in degrees.
+    fn taken(&self, search: &Search, loaded: &Loaded, held: f64, temperature: f64) -> f64 {
+        if self.model.latent() == 0.0 {
+            return 0.0;
+        }
+        let there = search.after(self.seen(loaded, held, temperature));
+        let (least, greatest) = search.range();
+        let share = (there.unwrap_or(f64::NAN) - search.output()) / (greatest - least);
+        self.model.latent() * share
+    }
+
+    /// The temperature of a body that would come to `unbound` if nothing were bound; nothing is at
+    /// the first sample.
+    fn bound(
+        &self,
+        search: &Search,
+        loaded: &Loaded,
+        (held, last): (f64, Option<f64>),
+        unbound: f64,
+    ) -> f64 {
+        if last.is_none() || self.model.latent() == 0.0 {
+            return unbound;
+        }
+        let free = |temperature| temperature + self.taken(search, loaded, held, temperature);
+        root(free, unbound)
     }
 
     fn loaded(&self, load: f64) -> Loaded {

@@ -130,6 +130,11 @@ impl Search {
         self.output
     }
 
+    /// The least and the greatest output.
+    pub fn range(&self) -> (f64, f64) {
+        (self.ends[0].1, self.ends[1].1)
+    }
+
     /// The first input at which `met` holds, on the way from here to the end of the output's range.
     fn first(&self, direction: i8, met: impl Fn(f64) -> bool) -> Result<f64> {
         let mut before = self.input;
@@ -147,7 +152,8 @@ impl Search {
         }
     }
 
-    fn after(&self, input: f64) -> Result<f64> {
+    /// The output at an input, if it went there.
+    pub fn after(&self, input: f64) -> Result<f64> {
         let way: Vec<f64> = self.history.iter().copied().chain([input]).collect();
         let outputs = forward(&self.model, &way)?;
         Ok(outputs[outputs.len() - 1])

@@ -16,6 +16,8 @@ const LOADS: (f64, f64) = (0.0, 200.0);
 #[derive(Clone, Copy, PartialEq)]
 enum Stage {
     Body,
+    /// Heat that is bound, of a body.
+    Latent,
     Load,
     Spacing,
     Creep,
@@ -51,6 +53,7 @@ pub fn all() -> Result<Vec<(String, String)>> {
     };
     let line = (0.0, Positive);
     both("body-mkp-5", Mkp, &[Stage::Body], line)?;
+    both("latent-mkp-5", Mkp, &[Stage::Body, Stage::Latent], line)?;
     both("load-mkp-5", Mkp, &[Stage::Load], line)?;
     both("spacing-mkp-5", Mkp, &[Stage::Spacing], line)?;
     both("creep-mkp-5", Mkp, &[Stage::Creep], line)?;
@@ -69,6 +72,8 @@ pub fn all() -> Result<Vec<(String, String)>> {
     both("chain-registration-kp-5", Kp, &registered, (-3.5, Negative))?;
     let ringing = [&EVERY[..], &[Stage::Ring]].concat();
     both("chain-ring-kp-5", Kp, &ringing, (-3.5, Negative))?;
+    let bound = [&registered[..], &[Stage::Latent]].concat();
+    both("chain-latent-kp-5", Kp, &bound, (-3.5, Negative))?;
     both("weights-mkp-5", Mkp, &[Stage::Weights], line)?;
     let whole = [&EVERY[..], &[Stage::Weights]].concat();
     both("chain-weights-mkp-5", Mkp, &whole, line)?;
@@ -89,6 +94,10 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
                     "tau_heating": 0.25, "tau_cooling": 0.375,
                 });
                 text["drive"] = json!({"min": 0.0, "max": 1.0});
+            }
+            Stage::Latent => {
+                text["version"] = 3.into();
+                text["stages"]["latent"] = json!([48.0]);
             }
             Stage::Load => {
                 text["load"] = json!({

@@ -2,7 +2,7 @@
 //! over, which costs a small share of choosing again.
 
 use crate::identify::fit::Fit;
-use crate::identify::options::{Choice, Dynamics, Spacing};
+use crate::identify::options::{Choice, Dynamics, Spacing, Thermal};
 use crate::identify::stages::{SpacingShape, spacing_shape};
 use crate::model::{Model, Smooth, Start};
 use crate::recording::Recording;
@@ -85,7 +85,7 @@ impl Fit<'_> {
             shape => fit.shape = shape,
         }
         // A body and a dead time change places, so the dead time is looked for again.
-        if self.options.delay == Choice::Auto && !self.body {
+        if self.options.delay == Choice::Auto && self.thermal == Thermal::None {
             fit = fit.delay(chosen.delay);
         }
         if !chosen.rings {

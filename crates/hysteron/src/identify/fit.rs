@@ -6,7 +6,7 @@ use crate::identify::choose::start::{at_rest, usual_start};
 use crate::identify::delay;
 use crate::identify::doubt::sessions::widen;
 use crate::identify::kept;
-use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing};
+use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing, Thermal};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked, SpacingShape};
@@ -48,7 +48,7 @@ pub struct Fit<'a> {
     pub(super) open: Open,
     pub(super) auto_start: bool,
     pub(super) auto_bootstrap: bool,
-    pub(super) body: bool,
+    pub(super) thermal: Thermal,
     /// How the levels follow the output, where that was chosen before.
     pub(super) shape: Option<SpacingShape>,
     /// Whether the model is tested on what is left out, even if nothing is chosen by it.
@@ -90,7 +90,7 @@ impl From<FitOptions> for Fit<'_> {
             },
             auto_start: false,
             auto_bootstrap: false,
-            body: false,
+            thermal: Thermal::None,
             shape: None,
             tested: false,
             repeats: Vec::new(),
@@ -284,15 +284,16 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Whether a thermal body in front of the operators is identified together with the weights.
+    /// Whether a thermal body in front of the operators is identified together with the weights:
+    /// `true` or `false`, or [`Auto`](crate::Auto) for a body that may bind heat ([`Thermal`]).
     ///
     /// The recordings need time. Their input is a drive that heats (squared current, squared
     /// voltage, duty cycle). For given time constants, finding the weights is a convex problem. So
     /// the search is over the time constants only (separable least squares, Golub and Pereyra
     /// 1973).
     #[must_use]
-    pub fn thermal(mut self, body: bool) -> Self {
-        self.body = body;
+    pub fn thermal(mut self, thermal: impl Into<Thermal>) -> Self {
+        self.thermal = thermal.into();
         self
     }
 
@@ -390,7 +391,8 @@ impl<'a> Fit<'a> {
             stages::check_time(recordings)?;
         }
         // A body and a load change what the operators see of the first sample.
-        let plain = !self.body && recordings.iter().all(|recording| recording.load.is_none());
+        let heated = self.thermal != Thermal::None;
+        let plain = !heated && recordings.iter().all(|recording| recording.load.is_none());
         if let (true, Some(prior)) = (self.auto_start, &self.prior) {
             options.start = prior.start();
         } else if self.auto_start {
@@ -419,7 +421,7 @@ impl<'a> Fit<'a> {
             Some(prior) => prior.fit(&seen, &options, self.progress)?,
             None => {
                 let asked = Asked {
-                    body: self.body,
+                    thermal: self.thermal,
                     open: self.open,
                     auto_bootstrap: self.auto_bootstrap,
                     shape: self.shape,

@@ -42,7 +42,7 @@ pub(crate) use history::find_start;
 pub(crate) use initial::Initial;
 pub use monotone::{AGAINST_INPUT, way_against_input};
 pub(crate) use options::SOME_SMOOTHNESS;
-pub use options::{Auto, Choice, Dynamics, FitOptions, LoadLaw, Spacing};
+pub use options::{Auto, Choice, Dynamics, FitOptions, LoadLaw, Spacing, Thermal};
 pub use prior::WeightPrior;
 pub(crate) use rest::find_rest;
 pub use stages::SpacingShape;

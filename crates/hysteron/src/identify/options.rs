@@ -72,6 +72,35 @@ pub enum LoadLaw {
     Weights,
 }
 
+/// What is looked for between a drive that heats and the operators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Thermal {
+    /// Nothing: the input is the temperature.
+    #[default]
+    None,
+    /// A body of the first order.
+    FirstOrder,
+    /// A body of the first order, and heat that the operators bind where that predicts parts of the
+    /// recordings that were left out.
+    Auto,
+}
+
+impl From<bool> for Thermal {
+    /// Whether there is a body of the first order.
+    fn from(body: bool) -> Self {
+        match body {
+            true => Self::FirstOrder,
+            false => Self::None,
+        }
+    }
+}
+
+impl From<Auto> for Thermal {
+    fn from(_: Auto) -> Self {
+        Self::Auto
+    }
+}
+
 /// What is looked for behind the operators in recordings with time, beside creep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dynamics {

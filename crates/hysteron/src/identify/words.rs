@@ -146,8 +146,8 @@ pub const FIT_OPTIONS: [FitOption; 20] = [
     FitOption {
         name: "thermal",
         default: "none",
-        range: "`first-order`",
-        purpose: "a thermal body in front of the operators",
+        range: "`first-order`, `auto`",
+        purpose: "a thermal body in front of the operators; `auto`: one that may bind heat",
     },
 ];
 
@@ -234,6 +234,7 @@ impl Fit<'_> {
             ("curve", "auto") => self.curve(Auto),
             ("curve", text) => self.curve(number(text)?),
             ("bootstrap", text) => self.bootstrap(Choice::Fixed(number(text)?)),
+            ("thermal", "auto") => self.thermal(Auto),
             ("thermal", "first-order") => self.thermal(true),
             _ => return None,
         })

@@ -9,11 +9,10 @@ use crate::model::operators::{FittedStart, Operators, Plane};
 use crate::model::registration::Registration;
 use crate::model::sign::Sign;
 use crate::model::summary::FitSummary;
-use crate::recording::{Quantity, Recording};
+use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
 use crate::series::NOISE;
 use hysteron_core::Operator;
-use std::borrow::Cow;
 
 /// A model of an actuator: weighted operators and the stages in front of them.
 ///
@@ -47,6 +46,8 @@ pub struct Model {
     /// The lowest and the highest drive that the actuator was recorded with. The inverse of a model
     /// with a thermal body stays between them, if it is given no other range.
     pub drive: Option<(f64, f64)>,
+    /// The heat that the operators bind, in degrees for a whole stroke.
+    pub(super) latent: f64,
     /// At which inputs rising and falling input pass each threshold.
     pub(super) registration: Registration,
     /// The inputs at the corners of the grid; empty for equal distances.
@@ -71,6 +72,7 @@ impl From<Operators> for Model {
             load: None,
             thermal: None,
             drive: None,
+            latent: 0.0,
             registration: Registration::default(),
             spacing: Vec::new(),
             behind: StageConstants::default(),
@@ -182,20 +184,8 @@ impl Model {
     #[must_use]
     pub fn without_body(&self) -> Self {
         let mut model = self.clone();
-        (model.thermal, model.drive) = (None, None);
+        (model.thermal, model.drive, model.latent) = (None, None, 0.0);
         model
-    }
-
-    /// The recording with the temperature as its input: behind the thermal body, if the model has
-    /// one.
-    ///
-    /// # Errors
-    /// [`Error::Thermal`] for a recording without time if there is a body.
-    pub fn behind_body<'r>(&self, recording: &'r Recording) -> Result<Cow<'r, Recording>> {
-        match &self.thermal {
-            None => Ok(Cow::Borrowed(recording)),
-            Some(body) => Ok(Cow::Owned(body.behind(recording)?)),
-        }
     }
 }
 

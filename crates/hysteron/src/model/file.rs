@@ -144,6 +144,7 @@ impl Model {
         }
         model.delay = file.delay;
         let listed = listed(file.creep, file.lag, file.stages)?;
+        model.latent = listed.stages().latent.heat;
         model.registration = Registration::of_constants(&listed);
         let behind = listed.stages().behind;
         model.behind = StageConstants::from_stages(&Stages {
@@ -303,9 +304,16 @@ fn hint(stage: &str) -> String {
     if ["offset", "weights"].contains(&stage) {
         return ": outputs are up to 1e140".into();
     }
+    let bound = match stage {
+        "latent" => "; it needs a thermal body, no relays and no weight below zero",
+        _ => "",
+    };
     let mut constants = Stages::<f64>::declared().flat_map(|stage| stage.constants);
     match constants.find(|constant| constant.name == stage) {
-        Some(constant) => format!(": {}; {}", constant.meaning, constant.range.words()),
+        Some(constant) => {
+            let words = constant.range.words();
+            format!(": {}; {words}{bound}", constant.meaning)
+        }
         None => String::new(),
     }
 }

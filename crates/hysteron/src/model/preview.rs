@@ -51,6 +51,8 @@ struct Planned {
     decay: Decay<f64>,
     /// The temperature that this sample needs and the plan does not reach.
     missed: Option<f64>,
+    /// The heat that is bound at this sample's output, in degrees.
+    bound: f64,
 }
 
 impl<'m> Preview<'m> {
@@ -100,6 +102,7 @@ impl<'m> Preview<'m> {
             dt,
             decay: self.body.decay(dt),
             missed,
+            bound: self.bound(&wanted)?,
         });
         let mut ready = Vec::new();
         while self.span > self.seconds {
@@ -144,6 +147,17 @@ impl<'m> Preview<'m> {
         })
     }
 
+    /// The heat that is bound at the wanted output, in degrees.
+    fn bound(&self, wanted: &Wanted) -> Result<f64> {
+        let (off, on) = self.plan.output_range(wanted.load)?;
+        match self.plan.model.latent() {
+            latent if latent > 0.0 && on != off => {
+                Ok(latent * (wanted.target.output - off) / (on - off))
+            }
+            _ => Ok(0.0),
+        }
+    }
+
     fn planned(&self, wanted: Wanted) -> Result<Wanted> {
         let (off, on) = self.plan.output_range(wanted.load)?;
         let (low, high) = (off.min(on), off.max(on));
@@ -178,15 +192,18 @@ impl<'m> Preview<'m> {
     pub(crate) fn next(&mut self) -> Option<(Wanted, f64)> {
         let (cold, hot) = self.rest;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        for planned in self.ahead.iter().skip(1).rev() {
+        let before: Vec<f64> = self.ahead.iter().map(|planned| planned.bound).collect();
+        for (planned, before) in self.ahead.iter().skip(1).zip(before).rev() {
             if let Some(needed) = planned.missed {
                 low = low.max(needed);
                 high = high.min(needed);
             }
             let decay = planned.decay;
+            // Where nothing was bound on the way.
+            let (lowest, highest) = (low + planned.bound - before, high + planned.bound - before);
             // The highest temperature from which it still cools down to `high`, and so on.
-            high = cold + (high - cold) / decay.cooling;
-            low = hot + (low - hot) / decay.heating;
+            high = cold + (highest - cold) / decay.cooling;
+            low = hot + (lowest - hot) / decay.heating;
         }
         let first = self.ahead.pop_front()?;
         self.span -= self.ahead.front().map_or(self.span, |next| next.dt);

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::{CreepTerm, FirstOrder, Model, Registration, StageConstants};
-use hysteron_core::{Axis, Direction, Load, Stages};
+use hysteron_core::{Axis, Direction, Error as CoreError, Latent, Load, Stages};
 
 impl Model {
     /// The constants of the stages around the operators, as the core takes them. The offset is that
@@ -12,6 +12,7 @@ impl Model {
         let curves = self.load.as_ref().and_then(|load| load.curves.as_ref());
         Stages {
             body: self.thermal.map(|body| body.core()),
+            latent: Latent { heat: self.latent },
             axis: Axis {
                 load: curves.map_or(Load::NONE, |curves| curves.core()),
                 registration: self.registration.core(),
@@ -37,6 +38,10 @@ impl Model {
             of_body(|body| &body.gain),
             of_body(|body| &body.tau_heating),
             of_body(|body| &body.tau_cooling),
+            match self.latent == 0.0 {
+                true => &[],
+                false => std::slice::from_ref(&self.latent),
+            },
             load.loads,
             load.shifts,
             load.scales,
@@ -54,6 +59,11 @@ impl Model {
 
     /// Checks the constants of all stages.
     pub(crate) fn check_stages(&self) -> Result<()> {
+        let negative = self.load.as_ref().is_some_and(|load| load.is_negative());
+        if self.latent != 0.0 && negative {
+            // At one load or another, as the core refuses it for weights that are always the same.
+            return Err(CoreError::Stage { stage: "latent" }.into());
+        }
         Ok(self.stages().check(&self.operators().core)?)
     }
 
@@ -87,6 +97,38 @@ impl Model {
     /// [`Error::Core`] if there are not `K + 1` ascending corners; empty for equal distances.
     pub fn with_spacing(mut self, corners: Vec<f64>) -> Result<Self> {
         self.spacing = corners;
+        self.check_stages()?;
+        Ok(self)
+    }
+
+    /// The heat that the operators bind: how much warmer the body would be, in degrees, if a whole
+    /// stroke bound none. 0 for none.
+    #[must_use]
+    pub fn latent(&self) -> f64 {
+        self.latent
+    }
+
+    /// The same model with heat that the operators bind.
+    ///
+    /// ```
+    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign};
+    /// let plane = Plane::new(1.0, 2.0, 2)?;
+    /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// model.thermal = Some(FirstOrder { gain: 2.0, ..FirstOrder::default() });
+    /// let model = model.with_latent(3.0)?;
+    /// let mut state = model.start();
+    /// model.step(&mut state, 0.0)?;
+    /// let heated = model.step(&mut state, Sample { dt: Some(50.0), ..1.0.into() })?;
+    /// let bound = 3.0 * heated.output / 3.0; // of a whole stroke of 3
+    /// assert!((state.temperature() + bound - 2.0).abs() < 1e-12);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Core`] for a number below zero or not finite, a model without a body, relays, and
+    /// weights below zero.
+    pub fn with_latent(mut self, degrees: f64) -> Result<Self> {
+        self.latent = degrees;
         self.check_stages()?;
         Ok(self)
     }

@@ -155,13 +155,43 @@ impl Model {
         if self.is_plain() && surroundings.load.is_none() {
             return Ok(Cow::Borrowed(input));
         }
+        Ok(Cow::Owned(self.along(input, surroundings, State::input)?))
+    }
+
+    /// The recording with the temperature as its input: behind the thermal body, if the model has
+    /// one.
+    ///
+    /// # Errors
+    /// [`Error::Thermal`] for a recording without time if there is a body. As [`Model::run_in`], if
+    /// heat is bound.
+    pub fn behind_body<'r>(&self, recording: &'r Recording) -> Result<Cow<'r, Recording>> {
+        match &self.thermal {
+            None => Ok(Cow::Borrowed(recording)),
+            Some(body) if self.latent() == 0.0 => Ok(Cow::Owned(body.behind(recording)?)),
+            Some(_) => {
+                let around = Surroundings::from_recording(self, recording);
+                Ok(Cow::Owned(Recording {
+                    input: self.along(&recording.input, around, State::temperature)?,
+                    ..recording.clone()
+                }))
+            }
+        }
+    }
+
+    /// What the state shows after each sample, from the model's start on.
+    fn along(
+        &self,
+        input: &[f64],
+        surroundings: Surroundings<'_>,
+        shown: impl Fn(&State) -> f64,
+    ) -> Result<Vec<f64>> {
         let mut state = self.start();
         let samples = surroundings.samples(self, input)?.map(|(index, sample)| {
             self.step(&mut state, sample)
                 .map_err(|error| at_index(error, index))?;
-            Ok(state.input())
+            Ok(shown(&state))
         });
-        Ok(Cow::Owned(samples.collect::<Result<_>>()?))
+        samples.collect()
     }
 }
 

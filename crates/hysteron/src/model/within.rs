@@ -15,6 +15,8 @@ use std::borrow::Cow;
 pub(crate) struct Found {
     pub(crate) thermal: Option<FirstOrder>,
     pub(crate) drive: Option<(f64, f64)>,
+    /// The heat that is bound, in degrees per unit of the operators' output.
+    pub(crate) latent: f64,
     pub(crate) curves: Option<LoadCurves>,
     pub(crate) registration: Registration,
     pub(crate) spacing: Vec<f64>,
@@ -89,6 +91,8 @@ impl Model {
     pub(crate) fn with_stages(mut self, found: Found) -> Result<Self> {
         self.thermal = found.thermal;
         self.drive = found.drive;
+        let (off, on) = self.operators.output_range();
+        self.latent = found.latent * (on - off).abs();
         if let Some(load) = &mut self.load {
             load.curves = found.curves;
         }

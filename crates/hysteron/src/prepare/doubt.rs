@@ -162,17 +162,10 @@ impl Doubt {
                 [Setting::on("believe")],
             );
         }
-        let rows = self.rows().into_iter();
-        let rows: Vec<String> = rows
-            .map(|(first, last)| format!("{first}-{last}"))
-            .collect();
         Remedy::new(
-            format!(
-                "look at them, and take them out of the file or of the fit ({{}} rows:{}); with \
-                 {{}} they are believed",
-                rows.join(",")
-            ),
-            [Setting::any("hold-out"), Setting::on("believe")],
+            "look at them. Cut the file there, in a file before them and one after them: several \
+             files make one experiment; with {} they are believed",
+            [Setting::on("believe")],
         )
     }
 }

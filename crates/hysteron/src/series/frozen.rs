@@ -16,6 +16,10 @@ const OFTEN: f64 = 0.5;
 
 /// A frozen channel may have noise: so far it stays together, as a share of the usual range.
 const NOISY: f64 = 0.01;
+/// Well inside its range a series moves sooner: within so much of it an answer is on its way between
+/// two ends, and so far the other series may go.
+const INSIDE: std::ops::RangeInclusive<f64> = 0.1..=0.9;
+const FAR_INSIDE: f64 = 0.5;
 /// What is noise and no slow answer: the mean squared step, by twice the variance. It is 1 for white
 /// noise and near 0 for a smooth series (von Neumann 1941).
 const ROUGH: f64 = 0.25;
@@ -36,10 +40,12 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
     // A drive may rest at the end of its range before an experiment, while what it moves settles.
     let (low, high) = range(values);
     let not_begun = |run: &Range<usize>| run.start == 0 && [low, high].contains(&values[0]);
-    let moves_far = |run: &Range<usize>| {
+    let moves_by = |run: &Range<usize>, far: f64| {
         let (rise, fall) = rise_and_fall(&other[run.clone()]);
         far > 0.0 && rise.min(fall) >= far && !not_begun(run)
     };
+    let moves_far = |run: &Range<usize>| moves_by(run, far);
+    let inside = |run: &Range<usize>| INSIDE.contains(&((values[run.start] - low) / (high - low)));
     let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(moves_far);
     let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
     let others = values.len() - count(&still);
@@ -53,7 +59,11 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
             .all(|other| other.end <= run.start || run.end <= other.start)
     };
     for run in together(values, NOISY * usual_span(values)) {
-        if moves_far(&run) && is_rough(&values[run.clone()]) && apart(&run, &found) {
+        let far = match inside(&run) {
+            true => far * FAR_INSIDE / FAR,
+            false => far,
+        };
+        if moves_by(&run, far) && is_rough(&values[run.clone()]) && apart(&run, &found) {
             found.push(run);
         }
     }

@@ -286,3 +286,46 @@ fn a_model_at_one_load_keeps_its_body() {
     assert!(light.thermal.is_some() && light.thermal == model.thermal);
     assert!(light.inverse().is_ok());
 }
+
+/// Where nothing moves there is no heat to find, and the fit is that of a body alone.
+#[test]
+fn a_still_output_binds_no_heat() {
+    let (time, drive) = drive();
+    let mut recording = Recording::new(drive, vec![1.5; time.len()]).unwrap();
+    recording.time = Some(time);
+    let run = |fit: Fit<'_>| {
+        fit.run(std::slice::from_ref(&recording))
+            .map(|m| m.to_json())
+    };
+    let fit = Fit::from(FitOptions::plain());
+    let auto = run(fit.clone().thermal(hysteron::Auto));
+    assert_eq!(auto.ok(), run(fit.thermal(true)).ok());
+}
+
+/// A model file keeps the heat that is bound, and refuses it where nothing can bind it.
+#[test]
+fn heat_that_is_bound_is_in_the_file() {
+    let plane = Plane::new(1.0, 2.0, 2).unwrap();
+    let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive).unwrap();
+    let mut heated = model.clone();
+    heated.thermal = Some(BODY);
+    let bound = heated.clone().with_latent(3.0).unwrap();
+    let again = Model::from_json(&bound.to_json()).unwrap();
+    assert_eq!(again, bound);
+    assert_eq!(again.latent(), 3.0);
+    assert_eq!(bound.constants().get("latent"), [3.0]);
+    assert_eq!(bound.without_body().latent(), 0.0);
+    let (time, drive) = ([0.0, 1.0, 2.0, 3.0], [0.0, 5.0, 5.0, 0.0]);
+    let mut recording = Recording::new(drive.to_vec(), vec![0.0; 4]).unwrap();
+    recording.time = Some(time.to_vec());
+    let [slow, fast] = [&bound, &heated].map(|m| m.behind_body(&recording).unwrap().into_owned());
+    assert!(slow.input[1] < fast.input[1] && slow.input[0] == fast.input[0]);
+
+    assert!(heated.clone().with_latent(-1.0).is_err());
+    assert!(heated.with_latent(f64::NAN).is_err());
+    assert!(model.with_latent(3.0).is_err());
+    let several = bound
+        .to_json()
+        .replace(r#""latent":[3.0]"#, r#""latent":[3.0,1.0]"#);
+    assert!(Model::from_json(&several).is_err());
+}

@@ -69,10 +69,10 @@ pub(super) fn find(
     Ok((body, told_apart))
 }
 
-struct Search<'a> {
-    recordings: &'a [Recording],
-    options: FitOptions,
-    progress: Progress<'a>,
+pub(super) struct Search<'a> {
+    pub(super) recordings: &'a [Recording],
+    pub(super) options: FitOptions,
+    pub(super) progress: Progress<'a>,
     /// Logarithms of the shortest and the longest time constant searched.
     bounds: (f64, f64),
     /// Of each run of this many samples, at most three are used.
@@ -80,7 +80,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(
+    pub(super) fn new(
         recordings: &'a [Recording],
         options: &FitOptions,
         progress: Progress<'a>,
@@ -114,6 +114,16 @@ impl<'a> Search<'a> {
         })
     }
 
+    /// Whether this logarithm of a time constant is one that is searched.
+    pub(super) fn has(&self, logarithm: f64) -> bool {
+        (self.bounds.0..=self.bounds.1).contains(&logarithm)
+    }
+
+    /// The samples of a recording behind a body that the search uses.
+    pub(super) fn thinned(&self, behind: &Recording) -> Recording {
+        thin(behind, self.stride)
+    }
+
     /// RMSE with the best weights behind a body with these logarithms of its time constants.
     fn rmse(&self, logarithms: [f64; 2]) -> Result<f64> {
         self.progress.tell("time constants", f64::NAN)?;
@@ -123,7 +133,7 @@ impl<'a> Search<'a> {
             tau_cooling,
             ..FirstOrder::default()
         };
-        let thinned = |r: &Recording| Ok(thin(&body.behind(r)?, self.stride));
+        let thinned = |r: &Recording| Ok(self.thinned(&body.behind(r)?));
         let heated: Result<Vec<Recording>> = self.recordings.iter().map(thinned).collect();
         match fit_weights(&heated?, &self.options, Progress::NONE) {
             Ok(model) => Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse)),
@@ -141,7 +151,7 @@ impl<'a> Search<'a> {
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],
     ) -> Result<([f64; 2], f64)> {
         let (low, high) = self.bounds;
-        let value = |point: &[f64; N]| match point.iter().all(|tau| (low..=high).contains(tau)) {
+        let value = |point: &[f64; N]| match point.iter().all(|tau| self.has(*tau)) {
             true => self.rmse(logarithms(point)),
             false => Ok(f64::INFINITY),
         };

@@ -1,6 +1,6 @@
 //! Identifies the stages around the operators, together with the weights.
 //!
-//! `body` is the thermal body, `load` the shift by the load, `spacing` the place of the levels,
+//! `body` is the thermal body, `latent` the heat that it loses to the operators, `load` the shift by the load, `spacing` the place of the levels,
 //! `ring`, `after` and `curve` those behind the operators, from the last to the first. Each finds
 //! its constants and hands on recordings as the next stage sees them. `nelder_mead` is the search of
 //! body and ring.
@@ -8,6 +8,7 @@
 mod after;
 mod body;
 mod curve;
+mod latent;
 mod load;
 mod nelder_mead;
 mod resonator;
@@ -15,6 +16,7 @@ mod ring;
 mod spacing;
 
 pub(crate) use after::check_time;
+use latent::Heated;
 pub use spacing::SpacingShape;
 pub(crate) use spacing::shape_of as spacing_shape;
 
@@ -22,7 +24,7 @@ use crate::error::Result;
 use crate::identify::changed::few;
 use crate::identify::choose::{Open, Seen, tested};
 use crate::identify::fixed::fit_weights_without;
-use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
+use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing, Thermal};
 use crate::model::{Found, Model, Outlier};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -32,8 +34,8 @@ use std::borrow::Cow;
 
 /// What a fit identifies besides the weights.
 pub(crate) struct Asked<'a> {
-    /// A thermal body.
-    pub(crate) body: bool,
+    /// What heats the operators.
+    pub(crate) thermal: Thermal,
     /// What is left to the data.
     pub(crate) open: Open,
     /// Whether the number of replicates follows from the levels.
@@ -56,16 +58,24 @@ pub(crate) fn fit(
     let mut found = Found::default();
     let mut notes = std::collections::BTreeMap::new();
     let mut seen: Cow<'_, [Recording]> = Cow::Borrowed(recordings);
-    if asked.body {
+    if asked.thermal != Thermal::None {
         let (first_order, told_apart) = body::find(recordings, options, progress)?;
-        let heated = recordings
-            .iter()
-            .map(|recording| first_order.behind(recording));
-        seen = Cow::Owned(heated.collect::<Result<_>>()?);
-        found.thermal = Some(first_order);
+        let mut heated = Heated::unbound(first_order);
+        let mut note = json!({"told_apart": told_apart});
+        if asked.thermal == Thermal::Auto
+            && recordings.iter().all(|recording| recording.load.is_none())
+            && let Some(binding) =
+                latent::find(recordings, options, (heated, told_apart), progress)?
+        {
+            heated = binding.heated;
+            note["latent"] = json!(binding.report);
+        }
+        seen = Cow::Owned(heated.behind(recordings)?);
+        found.thermal = Some(heated.body);
+        found.latent = heated.per_output.abs();
         let ranges = recordings.iter().map(|recording| range(&recording.input));
         found.drive = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        notes.insert("thermal".to_owned(), json!({"told_apart": told_apart}));
+        notes.insert("thermal".to_owned(), note);
     }
     let mut options = options.clone();
     let loaded = seen.iter().any(|recording| recording.load.is_some());
