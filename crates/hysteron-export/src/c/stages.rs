@@ -130,8 +130,7 @@ impl<T: Number> Staged<T> {
     }
 
     /// The constants that C has as arrays: those that are lists. Time constants and frequencies act
-    /// through factors alone, and those of the body and its heat are single
-    /// numbers.
+    /// through factors alone, and those of the body and its heat are single numbers.
     pub(super) fn arrays(&self) -> impl Iterator<Item = (&'static str, &[T])> {
         let single = |name: &str| ["ambient", "gain", "latent"].contains(&name);
         self.constants

@@ -123,8 +123,8 @@ pub(super) fn find(
 /// each with the levels and stages that it chose. Where nothing was left out, nothing speaks against
 /// it.
 pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
-    let validation = |model: &Model| model.fit.as_ref()?.validation.clone();
-    match (validation(with), validation(without)) {
+    let [with, without] = [with, without].map(|model| model.fit.as_ref()?.validation.as_ref());
+    match (with, without) {
         (Some(with), Some(without)) if with.criterion == without.criterion => with
             .criterion
             .is_worth(with.value(), without.value(), WORTH),

@@ -367,9 +367,13 @@ impl<'a> Fit<'a> {
     fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         let at_once = self.acting(recordings)?;
         // A body and a dead time change places, so what is behind the body tells.
-        let behind = recordings.iter().map(|r| at_once.behind_body(r));
-        let behind = behind.map(|r| Ok(r?.into_owned()));
-        let behind: Vec<Recording> = behind.collect::<Result<_>>()?;
+        let behind: Cow<'_, [Recording]> = match self.thermal {
+            Thermal::None => Cow::Borrowed(recordings),
+            _ => {
+                let behind = recordings.iter().map(|r| at_once.behind_body(r));
+                Cow::Owned(behind.map(|r| Ok(r?.into_owned())).collect::<Result<_>>()?)
+            }
+        };
         let delay = delay::find(&behind, &self.options, self.progress)?;
         if delay.is_none() {
             return Ok((at_once, delay));

@@ -36,17 +36,16 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         end - run.len()..end
     });
     let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
-    let far = FAR * usual_span(other);
+    let span = usual_span(other);
     // A drive may rest at the end of its range before an experiment, while what it moves settles.
     let (low, high) = range(values);
     let not_begun = |run: &Range<usize>| run.start == 0 && [low, high].contains(&values[0]);
-    let moves_by = |run: &Range<usize>, far: f64| {
+    let moves_by = |share: f64, run: &Range<usize>| {
         let (rise, fall) = rise_and_fall(&other[run.clone()]);
-        far > 0.0 && rise.min(fall) >= far && !not_begun(run)
+        span > 0.0 && rise.min(fall) >= share * span && !not_begun(run)
     };
-    let moves_far = |run: &Range<usize>| moves_by(run, far);
     let inside = |run: &Range<usize>| INSIDE.contains(&((values[run.start] - low) / (high - low)));
-    let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(moves_far);
+    let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(|run| moves_by(FAR, run));
     let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
     let others = values.len() - count(&still);
     let mut found = match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
@@ -60,10 +59,10 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
     };
     for run in together(values, NOISY * usual_span(values)) {
         let far = match inside(&run) {
-            true => far * FAR_INSIDE / FAR,
-            false => far,
+            true => FAR_INSIDE,
+            false => FAR,
         };
-        if moves_by(&run, far) && is_rough(&values[run.clone()]) && apart(&run, &found) {
+        if moves_by(far, &run) && is_rough(&values[run.clone()]) && apart(&run, &found) {
             found.push(run);
         }
     }

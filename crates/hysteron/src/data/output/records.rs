@@ -3,7 +3,7 @@
 
 use super::parquet::{io_error, properties};
 use crate::data::output::sign::is_our_table;
-use crate::data::table::caught;
+use crate::data::table::{PARQUET_FILE, caught};
 use crate::error::{Error, Result};
 use hysteron_files::{AtomicFile, Destination, Own};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -254,7 +254,7 @@ pub(crate) fn read_records(
         source,
     })?;
     let mut mark = [0; 4];
-    let is_parquet = (&file).read_exact(&mut mark).is_ok() && mark == *b"PAR1";
+    let is_parquet = (&file).read_exact(&mut mark).is_ok() && mark == *PARQUET_FILE;
     if !is_parquet {
         let problem =
             "this is no table of models, which is a Parquet file: a fit of a fleet makes one";

@@ -1,7 +1,7 @@
 //! Recognises files that hysteron wrote, by their content.
 
 use super::parquet::PROGRAM;
-use crate::data::table::ARROW_FILE;
+use crate::data::table::{ARROW_FILE, PARQUET_FILE};
 use crate::files::begins_with;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
@@ -30,7 +30,7 @@ const WORDS: [&str; 2] = ["status", "outcome"];
 
 /// Whether the file is a table that a command made.
 pub(crate) fn is_our_table(path: &Path) -> io::Result<bool> {
-    if begins_with(path, b"PAR1")? {
+    if begins_with(path, PARQUET_FILE)? {
         parquet(path)
     } else if begins_with(path, ARROW_FILE)? {
         super::arrow::is_ours(path)

@@ -1,11 +1,10 @@
 //! Reads tables row by row through one reader: CSV in its dialects, Parquet, Arrow and MATLAB files.
 //!
 //! `format` detects the format; `text` reads text, and `parquet`, `arrow` and `mat` what is `stored`
-//! by columns, each behind one trait. `columns` and `names`
-//! find columns, `time` converts times to seconds, and `clock` reads timestamps. `numbers` holds stored columns in memory, within the
-//! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are
-//! the settings, `hashing` computes the file's digest. `quiet` turns panics of libraries into
-//! errors. `labels` is the column whose text tells which recording a row belongs to.
+//! by columns, each behind one trait. `columns` and `names` find columns, `time` converts times to
+//! seconds, and `clock` reads timestamps. `numbers` holds stored columns in memory, within the limit
+//! of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are the
+//! settings. `quiet` turns panics of libraries into errors. `labels` is the column whose text tells which recording a row belongs to.
 
 mod arrow;
 mod block;
@@ -42,8 +41,8 @@ use crate::error::{Error, Place, Result};
 use bytes::Bytes;
 use hysteron_files::Hash;
 use numbers::Numbers;
-pub(in crate::data) use parquet::Pages;
 pub(crate) use parquet::caught;
+pub(in crate::data) use parquet::{MARK as PARQUET_FILE, Pages};
 use std::path::{Path, PathBuf};
 pub(in crate::data) use text::Splitter;
 use text::Text;

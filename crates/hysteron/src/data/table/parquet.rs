@@ -22,7 +22,7 @@ use std::fmt::Display;
 use std::fs::File;
 
 /// The first bytes of a Parquet file.
-const MARK: &[u8] = b"PAR1";
+pub(in crate::data) const MARK: &[u8; 4] = b"PAR1";
 
 /// Parquet, read one row group at a time.
 pub(super) struct Parquet;
@@ -47,11 +47,15 @@ impl Format for Parquet {
         budget: &mut Budget,
     ) -> Result<Opened, String> {
         let budget = budget.another();
-        let (second, bytes) = file.open()?;
         if let Some(held) = file.held {
+            let (second, bytes) = file.open()?;
             return open(held.clone(), second, bytes, (asked, budget));
         }
-        let file = File::open(file.path).map_err(|error| error.to_string())?;
+        // Opened once: what is checked is what is read, also if the name is given to another file.
+        let text = |error: std::io::Error| error.to_string();
+        let file = File::open(file.path).map_err(text)?;
+        let bytes = file.metadata().map_err(text)?.len();
+        let second = Box::new(file.try_clone().map_err(text)?);
         open(file, second, bytes, (asked, budget))
     }
 }

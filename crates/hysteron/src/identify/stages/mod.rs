@@ -1,9 +1,9 @@
 //! Identifies the stages around the operators, together with the weights.
 //!
-//! `body` is the thermal body, `latent` the heat that it loses to the operators, `load` the shift by the load, `spacing` the place of the levels,
-//! `ring`, `after` and `curve` those behind the operators, from the last to the first. Each finds
-//! its constants and hands on recordings as the next stage sees them. `nelder_mead` is the search of
-//! body and ring.
+//! `body` is the thermal body, `latent` the heat that it loses to the operators, `load` the shift by
+//! the load, `spacing` the place of the levels, `ring`, `after` and `curve` those behind the
+//! operators, from the last to the first. Each finds its constants and hands on recordings as the
+//! next stage sees them. `nelder_mead` is the search of body, heat and ring.
 
 mod after;
 mod body;
