@@ -34,7 +34,7 @@ impl Alike {
     pub(super) fn new(work: &Recording, sigma: [f64; 2]) -> Option<Self> {
         let mut truth = with_its_load(work).into_owned();
         band::settle(&mut truth.input, band::reach(work.len(), sigma[0]));
-        truth.output = from_kept(&truth, |_| true)?;
+        truth.output = from_kept(&truth, &|_| true)?;
         let mut noisy = truth.clone();
         let mut rng = ChaCha8Rng::seed_from_u64(SEED);
         for (values, sigma) in [&mut noisy.input, &mut noisy.output].into_iter().zip(sigma) {

@@ -36,7 +36,7 @@ pub enum Doubt {
     Repeated {
         /// First and last row.
         rows: (usize, usize),
-        /// First and last of the earlier rows.
+        /// First and last of the earlier rows, or of those that the first ones repeat.
         of: (usize, usize),
     },
     /// Rows are missing between two, and the input turned meanwhile.
@@ -53,8 +53,10 @@ pub enum Doubt {
         /// The error on the other rows of a model that has seen these too: a mean distance, in
         /// percent of the usual range of the output.
         with: f64,
-        /// The error there of a model that has not.
+        /// The error there of a model that has not, or that has seen them read in another way.
         without: f64,
+        /// That way, in words: `with 25.4 times the displacement`.
+        read: Option<String>,
     },
 }
 
@@ -73,10 +75,19 @@ impl fmt::Display for Doubt {
             Self::Repeated {
                 rows: (first, last),
                 of: (earlier, until),
-            } => write!(
-                f,
-                "rows {first} to {last} are rows {earlier} to {until} once more, to the last digit"
-            ),
+            } => {
+                let all = last - first == until - earlier;
+                let begin = if all {
+                    "are"
+                } else {
+                    "stood there before, and begin as"
+                };
+                write!(
+                    f,
+                    "rows {first} to {last} {begin} rows {earlier} to {until} once more, to the \
+                     last digit"
+                )
+            }
             Self::Gap {
                 series,
                 rows: (before, after),
@@ -88,15 +99,22 @@ impl fmt::Display for Doubt {
                 rows,
                 with,
                 without,
+                read,
             } => {
                 let rows = rows
                     .iter()
                     .map(|(first, last)| format!("{first} to {last}"));
+                let (how, causes) = match read {
+                    Some(way) => (way.as_str(), ""),
+                    None => (
+                        "without them",
+                        ". Other units, exchanged columns or another sensor do this",
+                    ),
+                };
                 write!(
                     f,
                     "rows {} disagree with the others: a model that sees them errs {with:.2} % of \
-                     the range on the others, without them {without:.2} %. Other units, exchanged \
-                     columns or another sensor do this",
+                     the range on the others, {how} {without:.2} %{causes}",
                     rows.collect::<Vec<_>>().join(" and ")
                 )
             }
@@ -230,9 +248,10 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
     if found.is_empty() {
         let percent = |error: f64| 100.0 * error / usual_span(output);
         found.extend(disagreement(recording).map(|found| Doubt::Disagree {
-            rows: found.rows.iter().map(rows).collect(),
+            rows: found.suspect.rows.iter().map(rows).collect(),
             with: percent(found.with),
             without: percent(found.without),
+            read: found.suspect.way.map(|way| way.text(x, y)),
         }));
     }
     found

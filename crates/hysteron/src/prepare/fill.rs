@@ -46,7 +46,7 @@ pub(super) fn input(recording: &Recording, lost: &[usize]) -> Vec<f64> {
 pub(super) fn output(recording: &Recording, lost: &[usize]) -> Vec<f64> {
     let mut values = recording.output.clone();
     let runs = runs(lost);
-    match from_kept(recording, |n| lost.binary_search(&n).is_err()) {
+    match from_kept(recording, &|n| lost.binary_search(&n).is_err()) {
         Some(model) => {
             // What the model leaves changes slowly.
             let mut left: Vec<f64> = values.iter().zip(&model).map(|(y, h)| y - h).collect();

@@ -191,15 +191,17 @@ pub(super) fn apart<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64>
     a.iter().zip(b).map(|(a, b)| (a - b).abs())
 }
 
-/// The output at each sample, from models that did not see it; `None` if none can be fitted.
-pub(super) fn unseen(recording: &Recording) -> Option<Vec<f64>> {
+/// The output at each sample, from models of those that are `kept`, which did not see it; `None` if
+/// none can be fitted.
+pub(super) fn unseen(recording: &Recording, kept: &dyn Fn(usize) -> bool) -> Option<Vec<f64>> {
     let len = recording.len();
-    let fold: Vec<Option<usize>> = (0..len).map(|n| Some(fold(n, len))).collect();
+    let fold = |n| kept(n).then(|| fold(n, len));
+    let fold: Vec<Option<usize>> = (0..len).map(fold).collect();
     without_folds(recording, &fold, None)
 }
 
 /// The output at each sample, from a model of those that are `kept`; `None` if it cannot be fitted.
-pub(super) fn from_kept(recording: &Recording, kept: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
+pub(super) fn from_kept(recording: &Recording, kept: &dyn Fn(usize) -> bool) -> Option<Vec<f64>> {
     let kept: Vec<f64> = (0..recording.len()).map(|n| f64::from(kept(n))).collect();
     if recording.len() < BLOCKS * SHORTEST {
         return None;

@@ -11,9 +11,11 @@ mod band;
 mod change;
 mod disagree;
 mod doubt;
+mod explained;
 mod fill;
 mod judge;
 mod lag;
+mod misread;
 mod options;
 mod rate;
 mod report;
@@ -21,6 +23,7 @@ mod resample;
 mod sign;
 mod single;
 mod smooth;
+mod suspects;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod test_series;

@@ -15,7 +15,7 @@ const FAR: f64 = 0.8;
 const OFTEN: f64 = 0.5;
 
 /// A frozen channel may have noise: so far it stays together, as a share of the usual range.
-const NOISY: f64 = 0.01;
+const NOISY: f64 = 0.02;
 /// Well inside its range a series moves sooner: within so much of it an answer is on its way between
 /// two ends, and so far the other series may go.
 const INSIDE: std::ops::RangeInclusive<f64> = 0.1..=0.9;
@@ -45,19 +45,19 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         span > 0.0 && rise.min(fall) >= share * span && !not_begun(run)
     };
     let inside = |run: &Range<usize>| INSIDE.contains(&((values[run.start] - low) / (high - low)));
-    let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(|run| moves_by(FAR, run));
+    let (far, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(|run| moves_by(FAR, run));
     let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
-    let others = values.len() - count(&still);
+    let others = values.len() - count(&far);
     let mut found = match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
         true => Vec::new(),
-        false => still,
+        false => far,
     };
     let apart = |run: &Range<usize>, found: &[Range<usize>]| {
         found
             .iter()
             .all(|other| other.end <= run.start || run.end <= other.start)
     };
-    for run in together(values, NOISY * usual_span(values)) {
+    for run in still(values) {
         let far = match inside(&run) {
             true => FAR_INSIDE,
             false => FAR,
@@ -76,6 +76,14 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         }
     }
     found
+}
+
+/// Runs of samples that keep one value, exactly or but for noise, whatever the other series does.
+pub(crate) fn still(values: &[f64]) -> Vec<Range<usize>> {
+    let mut runs = together(values, NOISY * usual_span(values));
+    let exactly = |run: &[f64]| run.iter().all(|x| *x == run[0]);
+    runs.retain(|run| is_rough(&values[run.clone()]) || exactly(&values[run.clone()]));
+    runs
 }
 
 /// Runs of samples that stay within a `band`, one after the other, each as long as it can be, but
@@ -126,7 +134,7 @@ fn is_rough(values: &[f64]) -> bool {
 }
 
 /// How far a series rises from a value before, at most, and how far it falls.
-fn rise_and_fall(values: &[f64]) -> (f64, f64) {
+pub(crate) fn rise_and_fall(values: &[f64]) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut rise, mut fall) = (0.0_f64, 0.0_f64);
     for &value in values {

@@ -9,6 +9,11 @@ const LARGE: f64 = 0.02;
 /// It is also larger than this share of the usual range.
 const SMALLEST: f64 = 0.05;
 
+/// Two jumps that cancel each other to this share may be so much smaller: the series may go on
+/// steeply between them.
+const CANCELS: f64 = 0.25;
+const PAIR: f64 = 0.5;
+
 /// A burst has at most this share of the samples, and between these numbers of them.
 const LONGEST: usize = 50;
 const BURST: std::ops::RangeInclusive<usize> = 8..=100;
@@ -42,7 +47,7 @@ pub(crate) fn remove_bursts(values: &mut [f64]) -> Vec<usize> {
     while n < values.len() {
         let (before, jump) = (values[n - 1], values[n] - values[n - 1]);
         n += 1;
-        if jump.abs() <= largest {
+        if jump.abs() <= PAIR * largest {
             continue;
         }
         // It comes back to where the series would have gone by then.
@@ -50,8 +55,11 @@ pub(crate) fn remove_bursts(values: &mut [f64]) -> Vec<usize> {
         let back = |end: &usize| {
             let allowed = usual * (end - start + 1) as f64;
             let after = values[*end] - before;
-            (values[*end] - values[end - 1]).abs() > largest
-                && after.abs() <= allowed.max(largest).min(0.5 * jump.abs())
+            let step = values[*end] - values[end - 1];
+            let comes_back = after.abs() <= allowed.max(largest).min(0.5 * jump.abs());
+            let cancels = (step + jump).abs() <= CANCELS * jump.abs();
+            step.abs() > PAIR * largest && cancels
+                || step.abs().min(jump.abs()) > largest && comes_back
         };
         let Some(end) = (n..values.len().min(start + longest + 1)).find(back) else {
             continue;
@@ -87,6 +95,14 @@ mod tests {
             // Over 30 samples, 0.6 rad, the sagitta of the sine is 40 (1 − cos 0.3).
             assert!((found - truth).abs() < 2.0, "{n}: {found} for {truth}");
         }
+        // On a steep way, by less than half of what it goes on meanwhile.
+        let steep: Vec<f64> = (0..600)
+            .map(|n| f64::from(300 - (n - 300_i32).abs()))
+            .collect();
+        let mut read = steep.clone();
+        read[100..130].iter_mut().for_each(|x| *x += 14.0);
+        assert_eq!(remove_bursts(&mut read), (100..130).collect::<Vec<_>>());
+        assert_eq!(read, steep);
         let square: Vec<f64> = (0..300).map(|n| f64::from(n / 10 % 2)).collect();
         let mut cut = clean.clone();
         cut[1000..].iter_mut().for_each(|x| *x += 100.0);

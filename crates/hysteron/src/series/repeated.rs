@@ -44,17 +44,25 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
             n += 1;
             continue;
         }
-        let same = |earlier: usize| {
-            let count = (0..len - n)
-                .take_while(|k| row(earlier + k) == row(n + k))
-                .count();
-            (n..n + count, earlier..earlier + count)
+        let same = |earlier: usize, n: usize| {
+            let pairs = (0..len - n).take_while(|k| row(earlier + k) == row(n + k));
+            pairs.count()
         };
-        // The rows go on where the earlier ones ended, or elsewhere.
-        let goes_back = |(again, of): &Repeated| {
-            of.end >= again.start || again.end == len || is_seam(again.end)
+        // The rows go on where the earlier ones ended, or elsewhere. A block may be made of several,
+        // where one had been written into another before.
+        let block = |earlier: usize| {
+            let count = same(earlier, n);
+            let of = earlier..earlier + count;
+            let mut end = n + count;
+            while of.end < n && end + SHORTEST <= len && !is_seam(end) {
+                let (first, last) = *places.get(&key(end))?;
+                let count = [first, last].map(|earlier| same(earlier, end));
+                end += count[0].max(count[1]);
+            }
+            let goes_back = of.end >= n || end == len || is_seam(end);
+            goes_back.then_some((n..end, of))
         };
-        match [last, first].map(same).into_iter().find(goes_back) {
+        match [last, first].into_iter().find_map(block) {
             Some(block) => {
                 n = block.0.end;
                 found.push(block);

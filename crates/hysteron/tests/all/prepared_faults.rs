@@ -22,6 +22,7 @@ fn mended(fault: Fault) -> bool {
 fn no_harm(pair: &[Recording; 2]) {
     let [first, second] = pair;
     let clean = plain(first, second, &fit()).unwrap();
+    let mut harmed = Vec::new();
     for fault in FAULTS {
         let mut refused = 0;
         for seed in 0..SEEDS {
@@ -29,11 +30,10 @@ fn no_harm(pair: &[Recording; 2]) {
             match advised(&dirty, second, &fit()) {
                 Ok(Came::To(error)) => {
                     let allowed = allowed(fault, pair, clean, seed).unwrap();
-                    let what = format!("{}, seed {seed}: {error:.3}", fault.name());
-                    assert!(
-                        error <= allowed,
-                        "{what}, allowed {allowed:.3}, clean {clean:.3}"
-                    );
+                    if error > allowed {
+                        let what = format!("{}, seed {seed}", fault.name());
+                        harmed.push(format!("{what}: {error:.3}, allowed {allowed:.3}"));
+                    }
                 }
                 Ok(Came::Refused(why)) => {
                     assert!(!why.is_empty());
@@ -48,6 +48,7 @@ fn no_harm(pair: &[Recording; 2]) {
             "{fault:?}: {refused} of {SEEDS} are refused"
         );
     }
+    assert_eq!(harmed, [""; 0], "clean {clean:.3}");
 }
 
 #[test]

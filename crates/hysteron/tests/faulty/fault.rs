@@ -32,6 +32,8 @@ pub enum Fault {
     Swapped,
     /// Blocks of rows come twice.
     Repeated,
+    /// The output moves to another zero, from one row on.
+    Slipped,
     /// Many inputs are in °F instead of °C.
     InputUnit,
     /// Many outputs are in inches instead of mm.
@@ -43,7 +45,7 @@ pub enum Fault {
 }
 
 /// All classes.
-pub const FAULTS: [Fault; 16] = [
+pub const FAULTS: [Fault; 17] = [
     Fault::Spikes,
     Fault::Bursts,
     Fault::Zeros,
@@ -56,6 +58,7 @@ pub const FAULTS: [Fault; 16] = [
     Fault::Quantised,
     Fault::Swapped,
     Fault::Repeated,
+    Fault::Slipped,
     Fault::InputUnit,
     Fault::OutputUnit,
     Fault::Noise,
@@ -71,15 +74,16 @@ impl Fault {
             Self::Zeros => "2 to 4 dropouts to zero, 5 to 20 readings",
             Self::Held => "2 to 4 dropouts that hold the value, 5 to 20 readings",
             Self::Missing => "rows missing, 2 to 6 times 1 to 20",
-            Self::FrozenOutput => "output frozen for a sixth to a third",
-            Self::FrozenInput => "input frozen for a sixth to a third",
+            Self::FrozenOutput => "output frozen for a sixth to a third, noise up to 0.3 %",
+            Self::FrozenInput => "input frozen for a sixth to a third, noise up to 0.3 %",
             Self::ClockForward => "clock steps forward by a tenth",
             Self::ClockBack => "clock steps back by a tenth",
             Self::Quantised => "readings in steps of 0.5 to 1 % of the range",
             Self::Swapped => "columns exchanged in a sixth to a third of the rows",
             Self::Repeated => "1 to 3 blocks of 20 to 60 rows twice",
-            Self::InputUnit => "a sixth to a third of the inputs in °F",
-            Self::OutputUnit => "a sixth to a third of the outputs in inches",
+            Self::Slipped => "output moved by 5 to 50 % of its range, from a row on",
+            Self::InputUnit => "a twelfth to a half of the inputs in °F",
+            Self::OutputUnit => "a twelfth to a half of the outputs in inches",
             Self::Noise => "noise of 0.5 to 1 % of the range on both",
             Self::Everything => "spikes, bursts, zeros, missing rows and noise",
         }
@@ -104,6 +108,7 @@ impl Fault {
             (0..count).map(span).collect::<Vec<Range<usize>>>()
         };
         let large = len / 6..=len / 3;
+        let of_units = len / 12..=len / 2;
         match self {
             Self::Spikes | Self::Bursts => {
                 let spans = match self {
@@ -141,8 +146,12 @@ impl Fault {
             Self::FrozenOutput | Self::FrozenInput => {
                 let span = spans(1..=1, large).remove(0);
                 let series = series(&mut dirty, self == Self::FrozenInput);
+                let (low, high) = range(series);
+                let noise = rng.random_range(0.0..0.003) * (high - low);
                 let value = series[span.start];
-                series[span].fill(value);
+                let read = |_| value + noise * gaussian(rng);
+                let read: Vec<f64> = span.clone().map(read).collect();
+                series[span].copy_from_slice(&read);
             }
             Self::ClockForward | Self::ClockBack => {
                 let at = spans(1..=1, 1..=1).remove(0).start;
@@ -183,8 +192,15 @@ impl Fault {
                     (0..rows.len()).map(|n| time[0] + step * n as f64).collect()
                 });
             }
+            Self::Slipped => {
+                let at = spans(1..=1, large).remove(0).start;
+                let (low, high) = range(&clean.output);
+                let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+                let step = side * rng.random_range(0.05..0.5) * (high - low);
+                dirty.output[at..].iter_mut().for_each(|y| *y += step);
+            }
             Self::InputUnit | Self::OutputUnit => {
-                let span = spans(1..=1, large).remove(0);
+                let span = spans(1..=1, of_units).remove(0);
                 let convert: fn(&mut f64) = match self {
                     Self::InputUnit => |t| *t = 1.8 * *t + 32.0,
                     _ => |y| *y /= 25.4,
@@ -196,10 +212,8 @@ impl Fault {
                 let share = rng.random_range(0.005..0.01);
                 for values in [&mut dirty.input, &mut dirty.output] {
                     let (low, high) = range(values);
-                    // Twelve uniform numbers make a Gaussian one.
-                    let mut gaussian = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
                     let sigma = share * (high - low);
-                    values.iter_mut().for_each(|v| *v += sigma * gaussian());
+                    values.iter_mut().for_each(|v| *v += sigma * gaussian(rng));
                 }
             }
             Self::Everything => {
@@ -216,6 +230,11 @@ impl Fault {
         }
         dirty
     }
+}
+
+/// Twelve uniform numbers make a Gaussian one.
+fn gaussian(rng: &mut ChaCha8Rng) -> f64 {
+    (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
 }
 
 fn series(recording: &mut Recording, input: bool) -> &mut Vec<f64> {

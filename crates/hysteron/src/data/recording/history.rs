@@ -4,6 +4,9 @@
 use super::columns::TIME;
 use crate::recording::long_gaps;
 
+/// So many rows with the times and values of earlier ones are those rows, whatever follows.
+const COPIED: usize = 2;
+
 /// What the clock tells of rows, by their index.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct History {
@@ -40,15 +43,15 @@ impl History {
                 n += 1;
                 continue;
             };
-            // The rows up to the last one once more.
+            // Rows once more, from somewhere before.
             let from = before.partition_point(|&row| time[row] < time[n]);
-            let count = before.len() - from;
-            let copied = (1..=time.len() - n).contains(&count)
-                && before[from..].iter().zip(n..).all(|(&row, n)| same(row, n));
+            let pairs = before[from..].iter().zip(n..time.len());
+            let count = pairs.take_while(|&(&row, n)| same(row, n)).count();
+            let goes_on = time.get(n + count).is_none_or(|next| *next >= time[last]);
             if same(last, n) {
                 copies.push(n);
                 n += 1;
-            } else if copied {
+            } else if count >= COPIED || (count > 0 && goes_on) {
                 copies.extend(n..n + count);
                 n += count;
             } else if time[n] == time[last] {
@@ -111,6 +114,10 @@ mod tests {
             (found.copies, found.kept),
             (vec![4, 5], vec![0, 1, 2, 3, 6])
         );
+        // A block from before, at its old times; then the recording goes on.
+        let time = [0.0, 1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 5.0];
+        let found = of(&time, &[1.0, 2.0, 3.0, 4.0, 5.0, 2.0, 3.0, 6.0]);
+        assert_eq!((found.copies, found.back.len()), (vec![5, 6], 0));
         for wrong in [-50.0, 50.0] {
             let found = of(&[0.0, 1.0, wrong, 3.0, 4.0], &[1.0, 2.0, 3.0, 4.0, 5.0]);
             assert_eq!((found.alone, found.back.len()), (vec![2], 0), "{wrong}");
