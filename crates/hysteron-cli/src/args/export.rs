@@ -48,7 +48,7 @@ impl From<CReal> for hysteron_export::CReal {
 pub(crate) struct ExportC {
     /// The model
     pub(crate) model: PathBuf,
-    /// Folder for the files: the algorithm (hysteron_mcu…) and the model's
+    /// Folder for the files: the algorithm (hysteron_mcu…), the model's, and what builds them
     #[arg(short, long = "output", value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
