@@ -4,7 +4,7 @@
  * delay, unless --cut has cut the line.
  *
  *   board ELF [--pty] [--seconds S] [--trace FILE] [--stack]
- *             [--cut S] [--hang S] [--noise P] [--loose S]
+ *             [--cut S] [--hang S] [--noise P] [--loose S] [--restart S]
  *
  * The trace has a row for each millisecond: time, wanted and actual position, drive. --stack prints
  * the most bytes that the stack ever took. */
@@ -32,7 +32,7 @@
 #define HANG 0xCFFF /* rjmp to itself */
 
 static int in = 0, out, has_host, waits, at_start = 1, is_sample;
-static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, noise;
+static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, restart = 1e9, noise;
 static unsigned char queue[4096];
 static size_t from, to;
 static plant spring;
@@ -161,6 +161,7 @@ int main(int count, char **args) {
         if (!strcmp(option, "--cut")) cut = atof(value);
         if (!strcmp(option, "--hang")) hang = atof(value);
         if (!strcmp(option, "--loose")) loose = atof(value);
+        if (!strcmp(option, "--restart")) restart = atof(value);
         if (!strcmp(option, "--noise")) noise = atof(value);
         if (!strcmp(option, "--trace")) trace = fopen(value, "w");
         n++;
@@ -182,6 +183,10 @@ int main(int count, char **args) {
     if (trace)
         setvbuf(trace, NULL, _IOLBF, 0); /* whole, however the program ends */
     for (;;) {
+        if (now >= restart) { /* the supply was too low for a moment */
+            restart = 1e9;
+            avr_reset(avr);
+        }
         if (avr->pc == 0) {
             if (hung_at) /* the chip's watchdog has started it again */
                 memcpy(avr->flash + hung_at, &held, 2);

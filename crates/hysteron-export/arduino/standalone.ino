@@ -57,6 +57,7 @@ void setup() {
   is_off |= hys_controller_start(&controller, &@name@_control, @wanted@, @followed@, under_way,
                                  @NAME@_LATE + 1) != HYS_OK;
   is_off |= hys_controller_go_on_from(&controller, 0) != HYS_OK;
+  delay(HEAT_S * 1000); // after a restart the wire may be hot, and the model starts cold
   due = micros();
 #if defined(__AVR__)
   wdt_enable(WDTO_1S); // a sketch that hangs starts again, with the drive off
