@@ -44,9 +44,9 @@ END
     "$hysteron" run "$1.toml" > "$1.said" 2> "$1.log"
 }
 
-# The error of a log from 20 s on: columns of time, wanted and position.
+# The error of a log from 25 s on, 20 s after the sketch alone began: columns of time, wanted and position.
 rmse() { awk -F, -v t="$2" -v r="$3" -v y="$4" \
-    'NR > 1 && $t > 20 && $t < 60 { sum += ($r - $y) ^ 2; n++ } END { printf "%.4f", sqrt(sum / n) }' "$1"; }
+    'NR > 1 && $t > 25 && $t < 60 { sum += ($r - $y) ^ 2; n++ } END { printf "%.4f", sqrt(sum / n) }' "$1"; }
 
 # The rows of a chip in the table of errors, which must not differ by more than a tenth.
 tracking() { # CHIP COMPUTER SERIAL BOARD

@@ -30,8 +30,8 @@ static void port_start(void) {
 
 static uint32_t port_now(void) { return TCNT1 = 0; }
 static uint32_t port_taken(uint32_t before) { return TCNT1 - before; }
-static void port_paint(void) {}
-static uint32_t port_stack(void) { return 0; } /* the emulator measures it */
+static inline void port_paint(void) {}
+static inline uint32_t port_stack(void) { return 0; } /* the emulator measures it */
 static void port_end(void) { __asm volatile("cli\n sleep"); } /* simavr ends there */
 
 #elif defined(__arm__) || defined(__riscv)
@@ -59,7 +59,7 @@ static void port_start(void) {
 }
 
 static void port_say(char c) { UART_DATA = (uint32_t)c; }
-static uint32_t *port_pointer(void) {
+static inline uint32_t *port_pointer(void) {
     uint32_t *pointer;
     __asm volatile("mov %0, sp" : "=r"(pointer));
     return pointer;
@@ -76,7 +76,7 @@ static void port_end(void) {
 /* QEMU's `virt`, where an instruction is a cycle (-icount shift=0). */
 static void port_start(void) {}
 static void port_say(char c) { *(volatile uint8_t *)0x10000000u = (uint8_t)c; }
-static uint32_t *port_pointer(void) {
+static inline uint32_t *port_pointer(void) {
     uint32_t *pointer;
     __asm volatile("mv %0, sp" : "=r"(pointer));
     return pointer;
@@ -90,14 +90,14 @@ __attribute__((noinline)) static uint32_t port_taken(uint32_t before) { return p
 static void port_end(void) { *(volatile uint32_t *)0x100000u = 0x5555u; }
 #endif
 
-static void port_paint(void) {
+static inline void port_paint(void) {
     volatile uint32_t *word;
     for (word = &stack_low; word < port_pointer(); word++)
         *word = PAINT;
 }
 
 /* Bytes of the stack below main's that were written since. */
-static uint32_t port_stack(void) {
+static inline uint32_t port_stack(void) {
     volatile uint32_t *word = &stack_low;
     while (*word == PAINT)
         word++;
@@ -110,8 +110,8 @@ static void port_say(char c) { putchar(c); }
 static void port_start(void) {}
 static uint32_t port_now(void) { return 0; }
 static uint32_t port_taken(uint32_t before) { return before; }
-static void port_paint(void) {}
-static uint32_t port_stack(void) { return 0; }
+static inline void port_paint(void) {}
+static inline uint32_t port_stack(void) { return 0; }
 static void port_end(void) {}
 #endif
 #endif
