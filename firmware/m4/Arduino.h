@@ -40,7 +40,6 @@ extern Uart Serial;
 
 unsigned long millis();
 unsigned long micros();
-void delay(unsigned long ms);
 int analogRead(uint8_t pin);
 void analogWrite(uint8_t pin, int value);
 void pinMode(uint8_t pin, uint8_t mode);

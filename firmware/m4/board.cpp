@@ -57,10 +57,6 @@ unsigned long micros() {
   return (unsigned long)(ticks / TICKS_US);
 }
 unsigned long millis() { return micros() / 1000; }
-void delay(unsigned long ms) {
-  for (const unsigned long from = millis(); millis() - from < ms;) {
-  }
-}
 
 int analogRead(uint8_t pin) {
   live();
