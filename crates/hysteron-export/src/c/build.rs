@@ -1,7 +1,7 @@
 //! What builds the C of a model: a file for make and one for CMake.
 
-use super::CExport;
 use super::seal::{self, Comment};
+use super::written::CExport;
 use std::path::Path;
 
 const MAKE: &str = include_str!("../../mcu/build.mk");
