@@ -63,7 +63,7 @@ pub(crate) struct ExportC {
     #[arg(long)]
     pub(crate) adaptation: bool,
     /// Also write a control loop around the model: its inverse and a PID
-    #[arg(long, requires = "dt", conflicts_with = "adaptation")]
+    #[arg(long, requires = "dt")]
     pub(crate) controller: bool,
     /// Gains of the PID: gain, integral time and derivative time in s [default: from the model, by
     /// simulation]
