@@ -125,7 +125,7 @@ pub fn c_sampled<'a>(
 /// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
 /// of [`hysteron::control::Controller`] with the fixed model as its compensator, which
 /// stands in the place of that of `scheme`. A filter, a gate and an inner loop are not to be had
-/// there.
+/// there. With [`COptions::adaptation`] the loop may also have states of the model that learns.
 ///
 /// # Errors
 /// As [`c_sampled`]; [`Error::Export`] too for a model with a load or without an inverse, and for
