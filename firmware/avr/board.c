@@ -3,8 +3,8 @@
  * clock: after each sample the board waits until the answer is there, so that a slow host is no
  * delay, unless --cut has cut the line.
  *
- *   board ELF [--pty] [--seconds S] [--trace FILE] [--stack]
- *             [--cut S] [--hang S] [--noise P] [--loose S]
+ *   board ELF [--pty] [--mega] [--seconds S] [--trace FILE] [--stack]
+ *             [--cut S] [--hang S] [--noise P] [--loose S] [--restart S]
  *
  * The trace has a row for each millisecond: time, wanted and actual position, drive. --stack prints
  * the most bytes that the stack ever took. */
@@ -31,8 +31,9 @@
 #define RAM_END 0x8FF
 #define HANG 0xCFFF /* rjmp to itself */
 
+static const char *chip = "atmega328p";
 static int in = 0, out, has_host, waits, at_start = 1, is_sample;
-static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, noise;
+static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, restart = 1e9, noise;
 static unsigned char queue[4096];
 static size_t from, to;
 static plant spring;
@@ -153,6 +154,10 @@ int main(int count, char **args) {
             open_terminal();
             continue;
         }
+        if (!strcmp(option, "--mega")) {
+            chip = "atmega2560"; /* for programs that print: its pins have other places */
+            continue;
+        }
         if (!strcmp(option, "--stack")) {
             atexit(print_stack);
             continue;
@@ -161,13 +166,14 @@ int main(int count, char **args) {
         if (!strcmp(option, "--cut")) cut = atof(value);
         if (!strcmp(option, "--hang")) hang = atof(value);
         if (!strcmp(option, "--loose")) loose = atof(value);
+        if (!strcmp(option, "--restart")) restart = atof(value);
         if (!strcmp(option, "--noise")) noise = atof(value);
         if (!strcmp(option, "--trace")) trace = fopen(value, "w");
         n++;
     }
     if (count < 2 || elf_read_firmware(args[1], &firmware))
         return 2;
-    avr = avr_make_mcu_by_name("atmega328p");
+    avr = avr_make_mcu_by_name(chip);
     if (!avr || avr_init(avr))
         return 1;
     firmware.frequency = 16000000;
@@ -182,6 +188,10 @@ int main(int count, char **args) {
     if (trace)
         setvbuf(trace, NULL, _IOLBF, 0); /* whole, however the program ends */
     for (;;) {
+        if (now >= restart) { /* the supply was too low for a moment */
+            restart = 1e9;
+            avr_reset(avr);
+        }
         if (avr->pc == 0) {
             if (hung_at) /* the chip's watchdog has started it again */
                 memcpy(avr->flash + hung_at, &held, 2);

@@ -129,9 +129,9 @@ void sample() {
 }
 
 void setup() {
-  pinMode(GATE, OUTPUT);
-  apply(0);
+  pinMode(GATE, OUTPUT); // and low
   Serial.begin(115200);
+  end("restart"); // a run that was going on learns of it
 #if defined(__AVR__)
   wdt_enable(WDTO_1S); // a sketch that hangs starts again, with the drive off
 #endif

@@ -57,7 +57,8 @@ void setup() {
   is_off |= hys_controller_start(&controller, &@name@_control, @wanted@, @followed@, under_way,
                                  @NAME@_LATE + 1) != HYS_OK;
   is_off |= hys_controller_go_on_from(&controller, 0) != HYS_OK;
-  due = micros();
+  // After a restart the wire may be hot, and the model starts cold: it begins when both are.
+  due = micros() + (unsigned long)(HEAT_S * 1e6);
 #if defined(__AVR__)
   wdt_enable(WDTO_1S); // a sketch that hangs starts again, with the drive off
 #endif
@@ -67,7 +68,7 @@ void loop() {
 #if defined(__AVR__)
   wdt_reset();
 #endif
-  if (micros() - due < DT_US) return;
+  if ((long)(micros() - due) < (long)DT_US) return;
   due += DT_US;
   if (micros() - due >= DT_US) overruns++;
 

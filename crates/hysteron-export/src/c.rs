@@ -1,6 +1,7 @@
 //! C99 with the model as constants.
 
 mod algorithm;
+mod build;
 mod constants;
 mod control;
 mod delay;
@@ -23,6 +24,7 @@ use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use learners::Learners;
 pub use real::CReal;
 use real::Number;
+use seal::Comment;
 pub use stages::CSampling;
 use std::path::{Path, PathBuf};
 pub use written::{CExport, CMemory, CWorstCase};
@@ -46,7 +48,9 @@ pub struct COptions<'a> {
 
 /// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as
 /// `hysteron_mcu.h`, `.c` and `hysteron_mcu_inverse.c`, the same for every model of a number type,
-/// and the model's constants as files of its name. With [`COptions::adaptation`] also
+/// and the model's constants as files of its name. `NAME.mk` builds them with make for a Cortex-M0+,
+/// a Cortex-M4F, RISC-V or this machine; `NAME.cmake` makes a target for CMake of them. With
+/// [`COptions::adaptation`] also
 /// `hysteron_mcu_adapt.h`, `.c` and what they include, by which the model follows the plant as with
 /// the learners [`hysteron::Learner::Increments`], `Drift` and `LeastSquares`, with the digits of
 /// [`hysteron_core::Estimator`].
@@ -121,7 +125,7 @@ pub fn c_sampled<'a>(
 /// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
 /// of [`hysteron::control::Controller`] with the fixed model as its compensator, which
 /// stands in the place of that of `scheme`. A filter, a gate and an inner loop are not to be had
-/// there.
+/// there. With [`COptions::adaptation`] the loop may also have states of the model that learns.
 ///
 /// # Errors
 /// As [`c_sampled`]; [`Error::Export`] too for a model with a load or without an inverse, and for
@@ -139,9 +143,13 @@ pub fn c_controlled<'a>(
 
 fn write(
     target: Destination<'_>,
-    (mut export, texts): (CExport, Vec<String>),
+    (mut export, mut texts): (CExport, Vec<String>),
     options: &COptions<'_>,
 ) -> Result<CExport> {
+    for (file, text) in build::files(&export) {
+        export.files.push(file.into());
+        texts.push(text);
+    }
     for file in &mut export.files {
         *file = target.path().join(&*file);
         refuse_other_type(file, options.real)?;
@@ -157,8 +165,8 @@ fn write(
     Ok(export)
 }
 
-/// As [`c_sampled`], in memory: the texts of the files, in the order of [`CExport::files`], which
-/// are then names without a folder.
+/// As [`c_sampled`], in memory: the texts of the files of C, in the order of [`CExport::files`],
+/// which are then names without a folder.
 ///
 /// # Errors
 /// As [`c_sampled`], but for files.
@@ -269,7 +277,10 @@ fn texts<T: Number>(
     let (source, beside) = (options.source, (learned.as_ref(), around.as_ref()));
     texts.push(text::header(&export, &constants, model, source, beside));
     texts.push(text::source(&export, &constants, beside));
-    let sealed = texts.iter().map(|text| seal::sealed(text)).collect();
+    let sealed = texts
+        .iter()
+        .map(|text| seal::sealed(text, Comment::Block))
+        .collect();
     Ok((export, sealed))
 }
 

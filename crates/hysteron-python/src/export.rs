@@ -51,7 +51,7 @@ impl Model {
     /// >>> with tempfile.TemporaryDirectory() as folder:
     /// ...     export = model.export_c(folder, name='wire')
     /// ...     sorted(os.path.basename(file) for file in export.files)
-    /// ['hysteron_mcu.c', 'hysteron_mcu.h', 'hysteron_mcu_internal.h', 'hysteron_mcu_inverse.c', 'wire.c', 'wire.h']
+    /// ['hysteron_mcu.c', 'hysteron_mcu.h', 'hysteron_mcu_internal.h', 'hysteron_mcu_inverse.c', 'wire.c', 'wire.cmake', 'wire.h', 'wire.mk']
     #[pyo3(signature = (
         folder, *, real="float", name=None, adaptation=false, dt=None, drive_range=None,
     ))]

@@ -48,7 +48,7 @@ impl From<CReal> for hysteron_export::CReal {
 pub(crate) struct ExportC {
     /// The model
     pub(crate) model: PathBuf,
-    /// Folder for the files: the algorithm (hysteron_mcu…) and the model's
+    /// Folder for the files: the algorithm (hysteron_mcu…), the model's, and what builds them
     #[arg(short, long = "output", value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
@@ -63,7 +63,7 @@ pub(crate) struct ExportC {
     #[arg(long)]
     pub(crate) adaptation: bool,
     /// Also write a control loop around the model: its inverse and a PID
-    #[arg(long, requires = "dt", conflicts_with = "adaptation")]
+    #[arg(long, requires = "dt")]
     pub(crate) controller: bool,
     /// Gains of the PID: gain, integral time and derivative time in s [default: from the model, by
     /// simulation]

@@ -36,7 +36,9 @@ fn files_and_figures_as_json() {
             "mcu/hysteron_mcu_inverse.c",
             "mcu/hysteron_mcu_internal.h",
             "mcu/spring.h",
-            "mcu/spring.c"
+            "mcu/spring.c",
+            "mcu/spring.mk",
+            "mcu/spring.cmake"
         ]
     );
     for file in files {
@@ -70,7 +72,7 @@ fn files_and_figures_as_json() {
 fn a_model_that_learns() {
     let folder = models();
     let said = json(folder.path(), "export c spring.json -o mcu --adaptation");
-    assert_eq!(said["files"].as_array().unwrap().len(), 11);
+    assert_eq!(said["files"].as_array().unwrap().len(), 13);
     assert!(
         said["ram_bytes"]["adaptation"].as_u64().unwrap() > 100,
         "{said}"
@@ -145,7 +147,7 @@ fn a_model_with_a_thermal_body() {
     assert_eq!(said["stages"], serde_json::json!(["body"]));
     assert_eq!(
         (&said["dt"], said["files"].as_array().unwrap().len()),
-        (&0.1.into(), 12)
+        (&0.1.into(), 14)
     );
     let source = fs::read_to_string(folder.path().join("mcu/wire.c")).unwrap();
     assert!(source.contains(".drive_max = 80.0f"), "{source}");
@@ -164,12 +166,19 @@ fn a_loop_and_a_library_for_arduino() {
         folder.path(),
         &format!("export c spring.json -o loop --controller --dt 0.05 {gains}"),
     );
-    assert_eq!(said["files"].as_array().unwrap().len(), 8);
+    assert_eq!(said["files"].as_array().unwrap().len(), 10);
     assert_eq!(said["control"]["gains"]["integral_s"], 0.2);
     assert!(
         said["ram_bytes"]["controller"].as_u64().unwrap() > 80,
         "{said}"
     );
+    // A loop whose model learns.
+    let said = json(
+        folder.path(),
+        &format!("export c spring.json -o both --controller --adaptation --dt 0.05 {gains}"),
+    );
+    assert_eq!(said["files"].as_array().unwrap().len(), 15);
+    assert!(said["ram_bytes"]["adaptation"].is_u64() && said["control"]["dt"] == 0.05);
     // Without gains they come from the model.
     let said = json(
         folder.path(),

@@ -16,7 +16,7 @@ pub enum Board {
 
 /// Bytes of code of the sketch `standalone` on an AVR, without the model's constants: measured with
 /// avr-gcc 5.4 as the Arduino IDE calls it, and rounded up. Without stages, and with a body; then
-/// what each other stage adds. `firmware/avr/run` measures it again.
+/// what each other stage adds. `firmware/boards/run` measures it again.
 const CODE: [usize; 2] = [22_500, 27_600];
 const MORE: [(&str, usize); 7] = [
     ("curve", 800),
@@ -34,6 +34,9 @@ const OWN: usize = 250;
 
 /// Bytes for the stack, without stages and with them: a little more than was measured.
 const STACK: [usize; 2] = [350, 520];
+
+/// Bytes of the largest array that avr-gcc compiles.
+const LARGEST_ARRAY: usize = 32_767;
 
 impl Board {
     /// Bytes of flash that a sketch may have: those of the chip without its boot loader. `None`
@@ -88,6 +91,15 @@ impl BoardMemory {
     /// does not fit with one.
     pub(super) fn of(export: &CExport, board: Board) -> Result<Self, String> {
         let avr = export.avr;
+        if board != Board::Large && avr.table > LARGEST_ARRAY {
+            return Err(format!(
+                "K = {} needs a table of {} bytes, and no array on the {} has more than \
+                 {LARGEST_ARRAY}",
+                export.levels,
+                avr.table,
+                board.name()
+            ));
+        }
         let need = |follows: bool| {
             let states = (1 + usize::from(follows)) * (avr.state + avr.turns);
             let model_ram = avr.constants - avr.table + states + avr.controller.unwrap_or(0);

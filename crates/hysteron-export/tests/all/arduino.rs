@@ -113,6 +113,15 @@ fn what_does_not_fit_is_refused_with_numbers() {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(!library.exists());
+    // avr-gcc: "size of array is too large".
+    let error = write(&model(127, false), &library, Board::Mega).unwrap_err();
+    assert!(
+        error.to_string().contains("a table of 33024 bytes"),
+        "{error}"
+    );
+    assert!(!library.exists());
+    write(&model(126, false), &library, Board::Mega).unwrap();
+    std::fs::remove_dir_all(&library).unwrap();
     let mega = write(&model(60, true), &library, Board::Mega).unwrap();
     assert!(mega.follows && mega.ram <= 8192, "{mega:?}");
     write(&model(200, true), &library, Board::Large).unwrap();

@@ -53,7 +53,9 @@ fn the_algorithm_and_two_files_that_name_the_model() {
         "hysteron_mcu_internal.h",
         "hysteron_mcu_inverse.c",
         "some_spring.c",
+        "some_spring.cmake",
         "some_spring.h",
+        "some_spring.mk",
     ];
     assert_eq!(names(&inner), expected);
     let header = std::fs::read_to_string(inner.join("some_spring.h")).unwrap();
@@ -82,7 +84,7 @@ fn the_algorithm_and_two_files_that_name_the_model() {
         ..options(CReal::Float)
     };
     c(&model, &inner, &named).unwrap();
-    assert_eq!(names(&inner).len(), 8);
+    assert_eq!(names(&inner).len(), 12);
 }
 
 #[test]
@@ -98,10 +100,10 @@ fn adaptation_is_an_option() {
         &options(CReal::Float),
     )
     .unwrap();
-    assert_eq!((plain.files.len(), plain.memory.adaptation), (6, None));
+    assert_eq!((plain.files.len(), plain.memory.adaptation), (8, None));
     let export = c(&model(20.0, 80.0, [1.0; 3], 0.0), folder.path(), &learns).unwrap();
-    assert_eq!(export.files.len(), 11);
-    assert_eq!(names(folder.path()).len(), 11);
+    assert_eq!(export.files.len(), 13);
+    assert_eq!(names(folder.path()).len(), 13);
     // The weights join the constants, and six tables with their coefficients.
     assert!(export.memory.constants > plain.memory.constants + (3 + 6 * 6 + 6) * 4);
     let header = std::fs::read_to_string(folder.path().join("some_spring.h")).unwrap();
@@ -154,7 +156,7 @@ fn a_folder_has_one_number_type() {
     };
     let said = refused(&model, folder.path(), &other);
     assert!(said.contains("`real` double"), "{said}");
-    assert_eq!(names(folder.path()).len(), 6);
+    assert_eq!(names(folder.path()).len(), 8);
     assert_eq!(
         std::fs::read(folder.path().join("hysteron_mcu.h")).unwrap(),
         before

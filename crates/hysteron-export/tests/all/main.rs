@@ -6,6 +6,7 @@ mod common;
 
 mod adapt;
 mod arduino;
+mod build;
 mod c;
 mod control;
 mod delay;

@@ -147,3 +147,53 @@ fn the_loop_on_the_page() {
         .current_dir(folder.path()));
     run(Command::new("./main").current_dir(folder.path()));
 }
+
+/// The loop that learns.
+#[test]
+fn the_loop_that_learns_on_the_page() {
+    if !has("cc") {
+        return;
+    }
+    let page = std::fs::read_to_string(here("../../docs/microcontroller.md")).unwrap();
+    let part = page.split("```c\n").nth(4).unwrap();
+    let part = part.split("```").next().unwrap();
+    let (before, sample) = part.split_once("/* At each sample").unwrap();
+    let sample = sample.split_once("*/").unwrap().1;
+    let folder = tempfile::tempdir().unwrap();
+    let plane = Plane::new(0.0, 1.0, 5).unwrap();
+    let model = Model::new(Operator::Mkp, plane, vec![0.4; 15], 0.0, Sign::Positive).unwrap();
+    let options = COptions {
+        real: CReal::Float,
+        name: None,
+        source: std::path::Path::new("spring.json"),
+        adaptation: true,
+    };
+    let scheme = Scheme::new(0.05, (0.0, 1.0));
+    let sampling = CSampling::default();
+    let made = c_controlled(&model, folder.path(), &options, &sampling, &scheme).unwrap();
+    // A plant of 0.7 times the stroke: only a model that has learned leads it to 2.
+    let program = format!(
+        "#include \"spring.h\"\n#include <stdio.h>\nstatic hys_real written;\n\
+         static void write_drive(hys_real drive) {{ written = drive; }}\n\
+         int main(void) {{\n\
+         static hys_turn own[SPRING_TURNS];\nstatic hys_state plant;\n\
+         hys_real reference, reading;\nint n;\n{before}\
+         if (hys_start(&spring, &plant, own, SPRING_TURNS) != HYS_OK) {{ return 2; }}\n\
+         for (n = 0; n < 2000; n++) {{\n\
+         int up = n / 50 % 2;\n\
+         reference = n < 1900 ? (up ? 1.0f : 2.5f) + (up ? 1.5f : -1.5f) * (hys_real)(n % 50) / 50 : 2;\n\
+         hys_step(&plant, written, &reading);\nreading = 0.7f * reading;\n{sample}}}\n\
+         printf(\"%g\\n\", (double)reading);\nreturn !(reading > 1.9f && reading < 2.1f); }}\n"
+    );
+    std::fs::write(folder.path().join("main.c"), program).unwrap();
+    let sources = made.files.iter();
+    let sources = sources.filter(|file| file.extension().is_some_and(|end| end == "c"));
+    run(Command::new("cc")
+        .args(STRICT)
+        .arg("-Wdouble-promotion")
+        .arg("main.c")
+        .args(sources)
+        .args(["-o", "main"])
+        .current_dir(folder.path()));
+    run(Command::new("./main").current_dir(folder.path()));
+}

@@ -1,0 +1,79 @@
+# Sourced by avr/run and m4/run, which say in `device` what starts a board with a sketch, as a list of
+# TOML without its brackets: a spring is recorded through the sketch `device`, fitted and controlled
+# with `hysteron run`, and then the board is left alone with the sketch `standalone`.
+
+say() { printf '%s\n' "$*" >&2; }
+fail() { say "$*"; exit 1; }
+# Whether an expression of numbers holds.
+holds() { awk "BEGIN { exit !($1) }"; }
+
+# Records wire.json. `lost_s`: a machine that has much to do may stop the board for a while.
+record() { # DEVICE
+    awk 'BEGIN { print "time,drive"
+        for (n = 0; n < 3600; n++)
+            printf "%.2f,%.5f\n", n / 20, 0.34 * (1 - cos(0.013 * n) * exp(-n / 3000)) }' > profile.csv
+    cat > record.toml << END
+mode = "record"
+log = "recording.csv"
+device = { command = [$1] }
+profile = { table = "profile.csv" }
+safety = { lost_s = 2 }
+END
+    "$hysteron" run record.toml > /dev/null 2> record.log || fail "$(cat record.log)"
+    "$hysteron" fit recording.csv --input drive --output output --time time \
+        --thermal first-order --levels 10 --bootstrap 0 -o wire.json > fit.log 2>&1 || fail "$(cat fit.log)"
+    # As plant.h has it.
+    awk 'BEGIN { print "time,reference"
+        for (n = 0; n < 1300; n++) { t = n / 20
+            printf "%.2f,%.6f\n", t, 5 - 2 * cos(0.2 * t) * (1 + 0.3 * sin(0.047 * t)) } }' > reference.csv
+}
+
+gain() { sed "s/.*\"$1\":\([-0-9.e]*\).*/\1/" <<< "$gains"; }
+
+# Controls with the gains of the library: `gains` is what `export arduino --json` said.
+control() { # NAME DEVICE SECONDS
+    cat > "$1.toml" << END
+mode = "control"
+log = "$1.csv"
+duration_s = $3
+device = { $2 }
+reference = { table = "reference.csv" }
+safety = { lost_s = 2 }
+controller = { kind = "inverse-pid", model = "wire.json", delay = 0, proportional = $(gain gain), integral_s = $(gain integral_s), derivative_s = $(gain derivative_s) }
+END
+    "$hysteron" run "$1.toml" > "$1.said" 2> "$1.log"
+}
+
+# The error of a log from 25 s on, 20 s after the sketch alone began: columns of time, wanted and position.
+rmse() { awk -F, -v t="$2" -v r="$3" -v y="$4" \
+    'NR > 1 && $t > 25 && $t < 60 { sum += ($r - $y) ^ 2; n++ } END { printf "%.4f", sqrt(sum / n) }' "$1"; }
+
+# The rows of a chip in the table of errors, which must not differ by more than a tenth.
+tracking() { # CHIP COMPUTER SERIAL BOARD
+    printf '| %s | %s | %s | %s |\n' "$@"
+    holds "$4 <= 1.1 * $2" || fail "$1: the loop on the board is worse by more than a tenth"
+    holds "$3 <= 1.2 * $2" || fail "$1: the serial line makes it worse"
+}
+
+# When the drive of a trace was above zero last.
+ends() { awk -F, '$4 > 0 { last = $1 } END { printf "%.2f", last }' "$1"; }
+
+# A row in the table of faults: until when the drive was on, and what `run` said at last.
+row() { # CHIP WORDS NAME LATEST
+    printf '| %s | %s | %s | %s |\n' "$1" "$2" "$(ends "$3.trace")" "$(tail -n 1 "$3.log" | sed 's/^hysteron: //')"
+    holds "$(ends "$3.trace") <= $4" || fail "$1, $2: the drive stays on"
+}
+
+# Full drive from the start: a profile of a record.
+hot() { # DEVICE
+    awk 'BEGIN { print "time,drive"; for (n = 0; n < 500; n++) printf "%.2f,1\n", n / 20 }' > hot.csv
+    cat > limit.toml << END
+mode = "record"
+log = "limit.csv"
+device = { command = [$1] }
+profile = { table = "hot.csv" }
+safety = { lost_s = 2 }
+END
+    "$hysteron" run limit.toml > /dev/null 2> limit.log || true
+    grep -q 'limit' limit.log || fail "limit: $(tail -n 1 limit.log)"
+}
