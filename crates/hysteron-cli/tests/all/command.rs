@@ -310,9 +310,9 @@ fn time_makes_a_default_fit_no_worse() {
         _ => format!("{line}\n"),
     });
     std::fs::write(bench.path("whole.csv"), whole.collect::<String>()).unwrap();
-    let error = |file: &str, time: &str| {
+    let error_with = |file: &str, time: &str, fixed: &str| {
         let columns = format!("--input temperature --output displacement{time}");
-        let done = bench.run(&format!("fit {file} {columns} -o m.json --force"));
+        let done = bench.run(&format!("fit {file} {columns}{fixed} -o m.json --force"));
         assert_eq!(done.code, 0, "{}", done.err);
         let found = bench.read("m.json");
         let done = bench.run(&format!(
@@ -321,6 +321,7 @@ fn time_makes_a_default_fit_no_worse() {
         let errors = done.json()["forward"]["nrmse_percent"].as_f64().unwrap();
         (errors, found)
     };
+    let error = |file: &str, time: &str| error_with(file, time, "");
     let (plain, _) = error("demo/recording-1.csv", "");
     let (timed, model) = error("demo/recording-1.csv", " --time time");
     // The spring answers at once: what is found besides would be an error of the grid.
@@ -330,6 +331,12 @@ fn time_makes_a_default_fit_no_worse() {
     let (whole, model) = error("whole.csv", " --time time --repair");
     assert!(!model.contains("ring_frequency"), "{model}");
     assert!(whole < 1.15 * plain, "{whole} and {plain}");
+    // Where all else is fixed, nothing is left out that could speak against a dead time.
+    let fixed = " --levels 20 --smooth 1e-8";
+    let (plain, _) = error_with("demo/recording-1.csv", "", fixed);
+    let (timed, model) = error_with("demo/recording-1.csv", " --time time", fixed);
+    assert!(!model.contains("\"delay\""), "{model}");
+    assert!(timed < 1.15 * plain, "{timed} and {plain}");
 }
 
 #[test]

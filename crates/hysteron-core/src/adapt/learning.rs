@@ -32,13 +32,18 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             return Outcome::Frozen;
         }
         let ends = self.increment_ends(position);
-        if !(moved || ends) {
-            return Outcome::AtRest;
-        }
         let Adaptation { gate, burst, .. } = self.options;
+        if !(moved || ends) {
+            // An output that goes there and back meanwhile says that this is no rest.
+            let stuck = match gate > T::ZERO {
+                true => self.find_stuck(state, measured, None),
+                false => None,
+            };
+            return stuck.map_or(Outcome::AtRest, Channel::outcome);
+        }
         let believed = self.gate.judge(error, gate, burst) != Verdict::Refused;
         if gate > T::ZERO
-            && let Some(channel) = self.find_stuck(state, measured, believed)
+            && let Some(channel) = self.find_stuck(state, measured, Some(believed))
         {
             return channel.outcome();
         }
@@ -73,8 +78,13 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
     }
 
     /// The channel that stands still. If one begins to, the parameters from before return; the
-    /// model's table is not written.
-    fn find_stuck<S>(&mut self, state: &State<T, S>, measured: T, believed: bool) -> Option<Channel>
+    /// model's table is not written. Whether the reading is believed is `None` at rest.
+    fn find_stuck<S>(
+        &mut self,
+        state: &State<T, S>,
+        measured: T,
+        believed: Option<bool>,
+    ) -> Option<Channel>
     where
         S: Memory<Turn<T>>,
     {
@@ -85,7 +95,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             measured,
         };
         let slices = self.layout.cut(self.memory.as_mut());
-        match self.watch.look(reading, believed) {
+        match self.watch.look_if(reading, believed) {
             Watched::Moving => return None,
             Watched::Piece { alive } => {
                 if alive {

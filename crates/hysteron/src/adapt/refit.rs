@@ -201,14 +201,19 @@ impl Refitter {
             return Ok((Outcome::Frozen, false));
         }
         let position = state.position();
+        let Refit { gate, burst, .. } = self.options;
         if (position - self.learned).abs() <= self.options.movement {
-            return Ok((Outcome::AtRest, false));
+            // An output that goes there and back meanwhile says that this is no rest.
+            let stuck = match gate > 0.0 {
+                true => self.find_stuck(state, measured, None)?,
+                false => None,
+            };
+            return Ok((stuck.map_or(Outcome::AtRest, Channel::outcome), false));
         }
         self.learned = position;
-        let Refit { gate, burst, .. } = self.options;
         let believed = self.gate.judge(error, gate, burst) != Verdict::Refused;
         if gate > 0.0
-            && let Some(channel) = self.find_stuck(state, measured, believed)?
+            && let Some(channel) = self.find_stuck(state, measured, Some(believed))?
         {
             return Ok((channel.outcome(), false));
         }
@@ -224,12 +229,12 @@ impl Refitter {
         Ok((Outcome::Waiting, due))
     }
 
-    /// The channel that stands still.
+    /// The channel that stands still. Whether the reading is believed is `None` at rest.
     fn find_stuck(
         &mut self,
         state: &OperatorState,
         measured: f64,
-        believed: bool,
+        believed: Option<bool>,
     ) -> Result<Option<Channel>> {
         self.there.clone_from(state);
         self.alone.rebase(&mut self.there)?;
@@ -238,7 +243,7 @@ impl Refitter {
             expected: self.alone.output(&self.there),
             measured,
         };
-        if let Watched::Piece { alive } = self.watch.look(reading, believed) {
+        if let Watched::Piece { alive } = self.watch.look_if(reading, believed) {
             let now = (self.weights.clone(), self.offset);
             let before = std::mem::replace(&mut self.pending, now);
             if alive {

@@ -120,15 +120,17 @@ pub(super) fn find(
 }
 
 /// Whether a model with a dead time predicts what was left out clearly better than the one without,
-/// each with the levels and stages that it chose. Where nothing was left out, nothing speaks against
-/// it.
+/// each with the levels and stages that it chose. Where nothing was left out, what was fitted tells:
+/// a dead time adds no weights to follow it with.
 pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
-    let [with, without] = [with, without].map(|model| model.fit.as_ref()?.validation.as_ref());
-    match (with, without) {
+    let (Some(with), Some(without)) = (&with.fit, &without.fit) else {
+        return false;
+    };
+    match (&with.validation, &without.validation) {
         (Some(with), Some(without)) if with.criterion == without.criterion => with
             .criterion
             .is_worth(with.value(), without.value(), WORTH),
-        _ => true,
+        _ => with.rmse < (1.0 - WORTH) * without.rmse,
     }
 }
 

@@ -2,13 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::recording::{Quantity, Recording};
-
-/// Units at the end of a name, as in `temperature_C`.
-const IN_NAMES: [&str; 22] = [
-    "C", "degC", "F", "degF", "K", "nm", "um", "mm", "cm", "m", "in", "inch", "mV", "V", "mA", "A",
-    "mN", "N", "kN", "Pa", "kPa", "MPa",
-];
+use crate::recording::{Measures, Quantity, Recording};
 
 impl Model {
     /// Refuses a recording in other units than the model's. A unit that is missing on either side
@@ -30,7 +24,7 @@ impl Quantity {
     /// # Errors
     /// [`Error::Fit`] that names both units.
     pub(crate) fn check_unit(&self, what: &str, data: &Self) -> Result<()> {
-        let (Some(expected), Some(found)) = (unit_of(self), unit_of(data)) else {
+        let Some((expected, found)) = units(self, data) else {
             return Ok(());
         };
         match spelt(expected) == spelt(found) {
@@ -44,13 +38,17 @@ impl Quantity {
     }
 }
 
-/// The unit of a quantity, or the one that its name ends with.
-fn unit_of(quantity: &Quantity) -> Option<&str> {
-    let of_name = || {
+/// The units of two quantities, if both are known. The end of a name is a unit only if it measures
+/// what the other one does: `voltage_in` is no length.
+fn units<'a>(one: &'a Quantity, other: &'a Quantity) -> Option<(&'a str, &'a str)> {
+    let of_name = |quantity: &'a Quantity| {
         let (name, unit) = quantity.name.rsplit_once('_')?;
-        (!name.is_empty() && IN_NAMES.contains(&unit)).then_some(unit)
+        (!name.is_empty() && Measures::by(unit).is_some()).then_some(unit)
     };
-    quantity.unit.as_deref().or_else(of_name)
+    let of = |quantity: &'a Quantity| quantity.unit.as_deref().or_else(|| of_name(quantity));
+    let (a, b) = (of(one)?, of(other)?);
+    let alike = Measures::by(a) == Measures::by(b);
+    (alike || one.unit.is_some() && other.unit.is_some()).then_some((a, b))
 }
 
 /// A unit without what people write differently: brackets, blanks, the sign of degrees.
@@ -87,6 +85,11 @@ mod tests {
             (Quantity::named("lift"), Quantity::with_unit("lift", "in")),
             (Quantity::with_unit("x", "µm"), Quantity::named("x_um")),
             // No unit, but a name.
+            (
+                Quantity::with_unit("drive", "V"),
+                Quantity::named("voltage_in"),
+            ),
+            (Quantity::named("voltage_V"), Quantity::named("voltage_in")),
             (Quantity::with_unit("T", "degC"), Quantity::named("T_hot")),
         ];
         for (one, other) in same {

@@ -2,11 +2,12 @@
 //!
 //! This file defines [`Recording`] and the [`Quantity`] of each series. `gaps` finds gaps in the
 //! time. `split` parts a recording into what is fitted and what is held out. `joined` puts several
-//! one after the other, to be shown.
+//! one after the other, to be shown. `units` knows what units measure.
 
 mod gaps;
 mod joined;
 mod split;
+mod units;
 
 #[cfg(feature = "data")]
 pub(crate) use gaps::long_gaps;
@@ -15,6 +16,7 @@ pub(crate) use joined::no_recordings;
 pub use joined::one_after_the_other;
 pub(crate) use split::split_each;
 pub use split::{HoldOut, Split};
+pub(crate) use units::Measures;
 
 use crate::error::{Error, Result};
 use crate::series::range;

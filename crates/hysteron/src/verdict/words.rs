@@ -21,7 +21,7 @@ impl Grade {
             Self::Good => "good: its inverse can drive without a sensor",
             Self::Usable => "usable: drive by it beside a controller that measures the output",
             Self::Poor => "poor: do not drive by it yet",
-            Self::Untested => "not tested: nothing was left out of the fit",
+            Self::Untested => "not tested: all of these data were fitted",
         }
     }
 }

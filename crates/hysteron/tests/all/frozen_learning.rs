@@ -137,6 +137,32 @@ fn the_model_after_a_freeze_is_one_from_before_it() {
     }
 }
 
+/// A thermometer that lost its contact reads one value, exactly or with noise.
+#[test]
+fn an_input_that_freezes_is_named() {
+    for seed in 0..60 {
+        let mut rng = ChaCha8Rng::seed_from_u64(3000 + seed);
+        let learner = LEARNERS[seed as usize % LEARNERS.len()];
+        let model = actuator(&mut rng, 11.3);
+        let mut recording = recorded(&mut rng, &model, 0.01);
+        let frozen = rng.random_range(800..1900);
+        let held = recording.input[frozen];
+        let noise = [0.0, 0.01][rng.random_range(0..2)];
+        for x in &mut recording.input[frozen..] {
+            *x = held + noise * rng.random_range(-1.0..1.0);
+        }
+        let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
+        let what = format!("{seed} {learner:?} {noise}: {:?}, {frozen}", adapted.stuck);
+        let [stuck] = &adapted.stuck[..] else {
+            panic!("{what}")
+        };
+        assert_eq!(stuck.channel, Channel::Input, "{what}");
+        // It may move in the band before it freezes.
+        assert!(stuck.samples.start.abs_diff(frozen) <= 60, "{what}");
+        assert_eq!(stuck.samples.end, recording.len(), "{what}");
+    }
+}
+
 /// Four fifths of a cycle to a whole one before the end of the recording: too late for a learner.
 #[test]
 fn a_freeze_in_the_last_cycle_is_found() {
