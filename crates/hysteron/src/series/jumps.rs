@@ -100,8 +100,8 @@ mod tests {
             .map(|n| f64::from(300 - (n - 300_i32).abs()))
             .collect();
         let mut read = steep.clone();
-        read[100..130].iter_mut().for_each(|x| *x += 14.0);
-        assert_eq!(remove_bursts(&mut read), (100..130).collect::<Vec<_>>());
+        read[100..112].iter_mut().for_each(|x| *x += 18.0);
+        assert_eq!(remove_bursts(&mut read), (100..112).collect::<Vec<_>>());
         assert_eq!(read, steep);
         let square: Vec<f64> = (0..300).map(|n| f64::from(n / 10 % 2)).collect();
         let mut cut = clean.clone();

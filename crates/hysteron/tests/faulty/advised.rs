@@ -1,7 +1,7 @@
 //! What comes of a recording with the command that is advised: `fit --prepare`.
 
 use super::fault::Fault;
-use hysteron::{Errors, Fit, PrepareOptions, Progress, Recording, Start, prepare};
+use hysteron::{Fit, PrepareOptions, Progress, Recording, Start, evaluate_errors, prepare};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -57,13 +57,6 @@ pub fn advised(
 
 /// Fits the recording as it is.
 pub fn plain(first: &Recording, second: &Recording, fit: &Fit<'_>) -> Result<f64, hysteron::Error> {
-    let model = fit.run(first)?;
-    let on = model.fit.as_ref().is_some_and(|fit| fit.start == Start::On);
-    let mut state = if on { model.saturated() } else { model.start() };
-    let mut output = vec![0.0; second.len()];
-    model.run(&mut state, &second.input, &mut output)?;
-    let errors = Errors::between(&second.output, &output, |_| true);
-    Ok(errors
-        .and_then(|errors| errors.nrmse_percent)
-        .unwrap_or(f64::NAN))
+    let found = evaluate_errors(&fit.run(first)?, second, Start::Fitted)?;
+    Ok(found.forward.nrmse_percent.unwrap_or(f64::NAN))
 }
