@@ -6,8 +6,9 @@
  *   board ELF [--pty] [--mega] [--seconds S] [--trace FILE] [--stack] [--strength X]
  *             [--cut S] [--hang S] [--noise P] [--loose S] [--restart S]
  *
- * --strength: another actuator (plant.h). The trace has a row for each millisecond: time, wanted and actual position, drive. --stack prints
- * the most bytes that the stack ever took. */
+ * --strength: another actuator (plant.h). The trace has a row for each millisecond, or for ten with
+ * --strength: time, wanted and actual position, drive. --stack prints the most bytes that the stack
+ * ever took. */
 #define _GNU_SOURCE
 #include "plant.h"
 #include <fcntl.h>

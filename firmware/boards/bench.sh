@@ -81,7 +81,7 @@ END
 
 # The sketch alone on another actuator: as it was when its model was recorded, a fifth weaker, and a
 # fifth stronger; with the fixed model, with a PI that is three times as strong, and with a learner.
-# `alone SKETCH STRENGTH`, which the chip's script has, runs it for 80 s. Prints rows of a table.
+# `alone SKETCH STRENGTH`, which the chip's script has, runs it for 60 s. Prints rows of a table.
 learning() { # CHIP BOARD
     local sketch strength model row strong
     model=$("$hysteron" export arduino quick.json -o fixed --name fixed --board "$2" --json)
@@ -98,7 +98,7 @@ learning() { # CHIP BOARD
         for sketch in fixed strong learns; do
             tail -n 2 $sketch$strength.txt | grep -q 'off:0 overruns:0' \
                 || fail "$1, $sketch, $strength: $(tail -n 1 $sketch$strength.txt)"
-            row+=("$(rmse $sketch$strength.trace 1 2 3 40 80)")
+            row+=("$(rmse $sketch$strength.trace 1 2 3 30 60)")
         done
         printf '| %s | model × %s | %s | %s | %s |\n' "$1" $strength "${row[@]}"
     done

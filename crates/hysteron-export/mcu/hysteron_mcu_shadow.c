@@ -17,7 +17,7 @@ static int choose(hys_shadow *self, hys_real fixed, hys_real learned)
 {
     self->fixed_error = mean(self->fixed_error, fixed);
     self->learned_error = mean(self->learned_error, learned);
-    self->samples += self->samples < FIRST;
+    self->samples = (unsigned char)(self->samples + (self->samples < FIRST));
     if (self->learner) {
         return self->fixed_error >= BETTER * self->learned_error;
     }

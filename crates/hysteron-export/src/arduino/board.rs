@@ -114,9 +114,9 @@ impl BoardMemory {
                 None => [0; 4],
             };
             let constants = avr.constants - avr.learners + options;
-            let learner = avr
-                .adaptation
-                .map_or(0, |bytes| bytes + avr.state + avr.turns + avr.table + shadow);
+            let learner = avr.adaptation.map_or(0, |bytes| {
+                bytes + avr.state + avr.turns + avr.table + shadow
+            });
             let own = match board {
                 Board::Mega => OWN_MEGA,
                 Board::Uno | Board::Large => OWN,

@@ -16,9 +16,9 @@ hys_turn turns_learned[@NAME@_TURNS];
 hys_real memory[@NAME@_INCREMENTS_NUMBERS];
 ";
 const LEARNER_START: &str = "  \
-  is_off |= hys_adapt_start(&adaptive, &@name@, @name@_weights, @name@.offset, &@name@_increments,
-                            memory, @NAME@_INCREMENTS_NUMBERS, turns_learned,
-                            @NAME@_TURNS) != HYS_OK;
+  is_off |= hys_adapt_start(&adaptive, &@name@, @name@_weights, @name@.offset,
+                            &@name@_increments, memory, @NAME@_INCREMENTS_NUMBERS,
+                            turns_learned, @NAME@_TURNS) != HYS_OK;
 ";
 const SHADOW_START: &str = "  \
   is_off |= hys_shadow_start(&shadow, &controller, &adaptive) != HYS_OK;

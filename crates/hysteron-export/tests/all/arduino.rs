@@ -144,9 +144,19 @@ fn a_sketch_that_learns_is_written_where_it_fits() {
     let write =
         |levels, body, board| written(&model(levels, body), &library, board, true).map(|_| ());
     let refusals = [
-        (5, false, Board::Uno, ["with a learner", "ATmega328P", "adaptation"]),
+        (
+            5,
+            false,
+            Board::Uno,
+            ["with a learner", "ATmega328P", "adaptation"],
+        ),
         (20, false, Board::Mega, ["K = 20", "ATmega2560", "levels"]),
-        (5, true, Board::Large, ["stages", "cannot learn", "adaptation"]),
+        (
+            5,
+            true,
+            Board::Large,
+            ["stages", "cannot learn", "adaptation"],
+        ),
     ];
     for (levels, body, board, words) in refusals {
         let said = write(levels, body, board).unwrap_err().to_string();
@@ -157,8 +167,14 @@ fn a_sketch_that_learns_is_written_where_it_fits() {
         write(levels, false, board).unwrap();
         let read = |name: &str| std::fs::read_to_string(library.join(name)).unwrap();
         let sketch = read("examples/standalone/standalone.ino");
-        assert!(sketch.contains("hys_shadow_step(&shadow, mm, &action)"), "{sketch}");
-        assert!(!sketch.contains('@') && sketch.lines().count() <= 150, "{sketch}");
+        assert!(
+            sketch.contains("hys_shadow_step(&shadow, mm, &action)"),
+            "{sketch}"
+        );
+        assert!(
+            !sketch.contains('@') && sketch.lines().count() <= 150,
+            "{sketch}"
+        );
         assert!(sketch.lines().all(|line| line.len() <= 100), "{sketch}");
         assert!(read("src/hysteron_mcu.h").contains("#define HYS_TABLES_IN_RAM\n"));
         assert!(library.join("src/hysteron_mcu_shadow.c").exists());

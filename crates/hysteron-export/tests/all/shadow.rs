@@ -61,7 +61,10 @@ fn samples(folder: &Path, gain: &str, mode: &str, noise: &str) -> Vec<Sample> {
         let words: Vec<&str> = line.split(' ').collect();
         let double = |n: usize| words[n].parse::<f64>().unwrap();
         let single = |n: usize| words[n].parse::<f32>().unwrap();
-        assert_ne!(words[6], "9", "the inverse has another model than was chosen");
+        assert_ne!(
+            words[6], "9",
+            "the inverse has another model than was chosen"
+        );
         Sample {
             wanted: double(0),
             output: double(1),
@@ -117,9 +120,8 @@ fn the_choice_is_that_of_the_library() {
 fn a_learner_gains_where_the_plant_changed_and_does_no_harm_where_it_errs() {
     let folder = tempfile::tempdir().unwrap();
     build(folder.path());
-    let errors = |gain, noise| {
-        ["f", "s", "l"].map(|mode| error(&samples(folder.path(), gain, mode, noise)))
-    };
+    let errors =
+        |gain, noise| ["f", "s", "l"].map(|mode| error(&samples(folder.path(), gain, mode, noise)));
     for gain in ["0.8", "1.2"] {
         let [fixed, shadow, alone] = errors(gain, "0.02");
         assert!(shadow < 0.6 * fixed, "{gain}: {fixed} {shadow} {alone}");
@@ -128,5 +130,8 @@ fn a_learner_gains_where_the_plant_changed_and_does_no_harm_where_it_errs() {
     assert!(shadow < 1.05 * fixed, "{fixed} {shadow}");
     // Its own guards are off, and the noise is a fifth of the stroke.
     let [fixed, shadow, alone] = errors("1.0", "1.5");
-    assert!(alone > 1.3 * fixed && shadow < 1.1 * fixed, "{fixed} {shadow} {alone}");
+    assert!(
+        alone > 1.3 * fixed && shadow < 1.1 * fixed,
+        "{fixed} {shadow} {alone}"
+    );
 }

@@ -41,6 +41,13 @@ static int begin(void)
         || hys_controller_go_on_from(&controller, 0) != HYS_OK;
 }
 
+/* What is wanted at a sample: up and down, in turn by all of the way, three fifths and a fifth of it. */
+static hys_real reference_at(int n, hys_real gain)
+{
+    hys_real share = (hys_real)(n % 400 < 200 ? n % 200 : 200 - n % 200) / 200;
+    return 1 + gain * (2 + 4 * share * (1 - (hys_real)0.4 * (hys_real)(n / 400 % 3)));
+}
+
 int main(int count, char **args)
 {
     hys_adapt_options options = wire_increments;
@@ -60,24 +67,21 @@ int main(int count, char **args)
     }
     if (start(&options) != HYS_OK || begin() != 0)
         return 2;
-    if (mode == 'l')
-        wanted.model = &adaptive.model;
     for (n = 0; n < 6000; n++) {
-        /* Up and down, in turn all of the way, three fifths and a fifth of it. */
-        hys_real share = (hys_real)(n % 400 < 200 ? n % 200 : 200 - n % 200) / 200;
-        hys_real size = 1 - (hys_real)0.4 * (hys_real)(n / 400 % 3);
-        hys_real reference = 1 + gain * (1 + 5 * share * size), output, reading, expected;
+        hys_real reference = reference_at(n, gain), ahead = reference_at(n + 1, gain), output, reading, expected;
         int outcome, code = HYS_OK;
         seed = seed * 1664525u + 1013904223u;
         (void)hys_step(&plant, action.drive, &output);
         output = 1 + gain * (output - 1);
         reading = output + noise * ((hys_real)(seed >> 8) / 16777216 - (hys_real)0.5);
-        if (hys_controller_step(&controller, reference, reference, HYS_HOLD, reading, &action) != HYS_OK)
+        if (hys_controller_step(&controller, reference, ahead, HYS_HOLD, reading, &action) != HYS_OK)
             return 3;
         if (mode == 's')
             code = hys_shadow_step(&shadow, reading, &action);
-        if (mode == 'l')
+        if (mode == 'l') {
+            wanted.model = &adaptive.model; /* the first step has copied another one */
             code = hys_adapt_step(&adaptive, controller.acting, reading, &expected, &outcome) | hys_rebase(&wanted);
+        }
         if (code != HYS_OK)
             return 4;
         printf("%.9g %.9g %.9g %.9g %.9g %.9g %d\n", (double)reference, (double)output, (double)reading,
