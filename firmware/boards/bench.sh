@@ -80,12 +80,12 @@ END
 }
 
 # The sketch alone on another actuator: as it was when its model was recorded, a fifth weaker, and a
-# fifth stronger; with the fixed model, with a PI that is three times as strong, and with a learner.
+# fifth stronger; with the fixed model, with a PI that is twice as strong, and with a learner.
 # `alone SKETCH STRENGTH`, which the chip's script has, runs it for 60 s. Prints rows of a table.
 learning() { # CHIP BOARD
     local sketch strength model row strong
     model=$("$hysteron" export arduino quick.json -o fixed --name fixed --board "$2" --json)
-    strong=$(gains=$model; awk "BEGIN { print 3 * $(gain gain) }"),$(gains=$model; gain integral_s)
+    strong=$(gains=$model; awk "BEGIN { print 2 * $(gain gain) }"),$(gains=$model; gain integral_s)
     "$hysteron" export arduino quick.json -o strong --name strong --board "$2" --gains "$strong" > /dev/null
     "$hysteron" export arduino quick.json -o learns --name learns --board "$2" --adaptation > /dev/null
     for sketch in fixed strong learns; do

@@ -47,7 +47,7 @@ static bool at_start = true, is_sample, waits, is_gone;
 /* What a restart of the chip does not touch. It lies behind the image's RAM. */
 struct outside {
   plant spring;
-  volatile uint64_t ticks; /* that have passed */
+  volatile uint64_t ticks; /* that have passed; also before a loop without end */
   unsigned long alive_ms;  /* until which the spring was computed */
   double drive;
   uint32_t is_there;       /* THERE behind the first start */
@@ -58,6 +58,11 @@ static outside &world = *(outside *)0x20300000u;
 
 #define WATCHDOG ((volatile uint32_t *)0x40008000u) /* load, value, control, clear */
 #define RESTART (*(volatile uint32_t *)0xE000ED0Cu)
+#define HALF_S (500000u * TICKS_US) /* to the watchdog's first call, and to the second */
+static void hang() {
+  for (;;) {
+  }
+}
 static void feed() { WATCHDOG[3] = 1; } /* it counts anew */
 
 static double now_s() { return world.alive_ms / 1000.0; }
@@ -80,14 +85,11 @@ static void live() {
   skip();
 }
 
-/* The watchdog's first call: the sketch hangs. Time goes on until the second; the spring follows when
- * the chip has started again. */
+/* The watchdog's first call: the sketch hangs. It goes on hanging until the second, and the spring
+ * follows when the chip has started again. When the emulator gets to that is not the chip's time. */
 extern "C" void not_masked() {
-  for (;;) {
-    const uint32_t now = TIMER[1];
-    world.ticks += last - now;
-    last = now;
-  }
+  world.ticks += last - TIMER[1] + HALF_S;
+  hang();
 }
 
 unsigned long micros() {
@@ -100,13 +102,13 @@ int analogRead(uint8_t pin) {
   live();
   if (!world.had_fault && now_s() >= HANG_S) {
     world.had_fault = true;
-    for (;;) {
-    }
+    hang();
   }
   if (!world.had_fault && now_s() >= RESTART_S) {
     world.had_fault = true;
     world.drive = 0; /* a pin of a chip in reset drives no gate */
     RESTART = 0x05FA0004u;
+    hang();
   }
   const double mm = pin == A1 ? reference(&world.spring, now_s()) : now_s() < LOOSE_S ? world.spring.mm : 0;
   return (int)(mm / 10 * 1023 + (double)rand() / RAND_MAX);
@@ -189,12 +191,12 @@ int main() {
     world.is_there = THERE;
     plant_start(&world.spring, STRENGTH);
   }
-  WATCHDOG[0] = 500000u * TICKS_US; /* half a second to the first call, and as much to the second */
-  WATCHDOG[2] = 3;
   trace.begin(0);
   skip();
   live();
   world.drive = 0; /* pins are inputs after a start */
+  WATCHDOG[0] = HALF_S;
+  WATCHDOG[2] = 3;
   setup();
   for (;;) {
     feed();
