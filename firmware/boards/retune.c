@@ -12,7 +12,6 @@ static hys_state plant, wanted, followed;
 static hys_controller controller;
 static hys_real under_way[LATE + 1];
 static hys_adaptive adaptive;
-static hys_shadow shadow;
 static hys_real memory[NUMBERS];
 static uint32_t hash = 2166136261u, seed = 1, most;
 static hys_real sum;
@@ -31,24 +30,31 @@ static void take(hys_real x) {
 
 /* One sample of the loop, as a program on a chip has it. The reading answers the last drive. */
 static void sample(hys_real reference, hys_real ahead, hys_real reading, hys_action *action) {
-    (void)hys_controller_step(&controller, reference, ahead, HYS_HOLD, reading, action);
 #ifdef LEARNS
-    (void)hys_shadow_step(&shadow, reading, action);
+    hys_real expected;
+    int outcome;
+    (void)hys_adapt_step(&adaptive, action->drive, reading, &expected, &outcome);
+    (void)hys_rebase(&wanted);
+    (void)hys_rebase(&followed);
 #endif
+    (void)hys_controller_step(&controller, reference, ahead, HYS_HOLD, reading, action);
 }
 
 static void all(void) {
     /* Two slow waves as sums of their last two values: no library is needed. */
     hys_real wave = 1, before = (hys_real)0.99988752, slow = 0, rise = (hys_real)0.00235, next, reading;
     hys_action action = {0, 0, 0};
+    const hys_model *model = &MODEL;
     int n;
     (void)hys_start(&MODEL, &plant, turns[0], TURNS);
     (void)hys_adapt_start(&adaptive, &MODEL, PARAMETERS, MODEL.offset, &OPTIONS, memory, NUMBERS, turns[1], TURNS);
-    (void)hys_start(&MODEL, &wanted, turns[2], TURNS);
-    (void)hys_start(&MODEL, &followed, turns[3], TURNS);
+#ifdef LEARNS
+    model = &adaptive.model;
+#endif
+    (void)hys_start(model, &wanted, turns[2], TURNS);
+    (void)hys_start(model, &followed, turns[3], TURNS);
     (void)hys_controller_start(&controller, &CONTROL, &wanted, &followed, under_way, LATE + 1);
     (void)hys_controller_go_on_from(&controller, 0);
-    (void)hys_shadow_start(&shadow, &controller, &adaptive);
     next = 1 + (hys_real)GAIN * (2 - (hys_real)1.2 * wave);
     for (n = 0; n < COUNT; n++) {
         hys_real reference = next, old = wave, error;
