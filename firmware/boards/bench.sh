@@ -83,7 +83,7 @@ END
 # fifth stronger; with the fixed model, with a PI that is twice as strong, and with a learner.
 # `alone SKETCH STRENGTH`, which the chip's script has, runs it for 60 s. Prints rows of a table.
 learning() { # CHIP BOARD
-    local sketch strength model row strong
+    local sketch strength model row strong most
     model=$("$hysteron" export arduino quick.json -o fixed --name fixed --board "$2" --json)
     strong=$(gains=$model; awk "BEGIN { print 2 * $(gain gain) }"),$(gains=$model; gain integral_s)
     "$hysteron" export arduino quick.json -o strong --name strong --board "$2" --gains "$strong" > /dev/null
@@ -101,5 +101,7 @@ learning() { # CHIP BOARD
             row+=("$(rmse $sketch$strength.trace 1 2 3 30 60)")
         done
         printf '| %s | model × %s | %s | %s | %s |\n' "$1" $strength "${row[@]}"
+        [ $strength = 1.2 ] && most=0.95 || most=1.05
+        holds "${row[2]} <= $most * ${row[0]}" || fail "$1: the learner brings nothing: ${row[*]}"
     done
 }
