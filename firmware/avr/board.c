@@ -1,13 +1,14 @@
-/* An emulated Arduino Uno with a simulated spring on it: the board's serial line is standard input
+/* An emulated Arduino Uno or Mega with a simulated spring on it: the board's serial line is standard input
  * and output, or a pseudo-terminal whose name goes to standard error. The chip's clock is the
  * clock: after each sample the board waits until the answer is there, so that a slow host is no
  * delay, unless --cut has cut the line.
  *
- *   board ELF [--pty] [--mega] [--seconds S] [--trace FILE] [--stack]
+ *   board ELF [--pty] [--mega] [--seconds S] [--trace FILE] [--stack] [--strength X]
  *             [--cut S] [--hang S] [--noise P] [--loose S] [--restart S]
  *
- * The trace has a row for each millisecond: time, wanted and actual position, drive. --stack prints
- * the most bytes that the stack ever took. */
+ * --strength: another actuator (plant.h). The trace has a row for each millisecond, or for ten with
+ * --strength: time, wanted and actual position, drive. --stack prints the most bytes that the stack
+ * ever took. */
 #define _GNU_SOURCE
 #include "plant.h"
 #include <fcntl.h>
@@ -28,11 +29,12 @@
 /* How long to wait for an answer, ms. Noise may have eaten the question. */
 #define PATIENCE (noise > 0 ? 200 : 2000)
 #define AFTER 4 /* s that the board goes on when the host is gone */
-#define RAM_END 0x8FF
 #define HANG 0xCFFF /* rjmp to itself */
 
 static const char *chip = "atmega328p";
 static int in = 0, out, has_host, waits, at_start = 1, is_sample;
+static int is_mega;
+static double strength; /* of another actuator; 0 for the spring */
 static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, restart = 1e9, noise;
 static unsigned char queue[4096];
 static size_t from, to;
@@ -87,6 +89,10 @@ static void listen(int patience) {
 static double duty(const avr_t *avr) {
     const uint8_t *data = avr->data;
     int is_pwm = data[0x80] & 0x80, is_output = data[0x24] & 2, is_high = data[0x25] & 2;
+    if (is_mega) { /* bit 6 of port H, and timer 2 */
+        is_output = data[0x101] & 0x40, is_high = data[0x102] & 0x40;
+        return data[0xB0] & 0x20 ? data[0xB4] / 255.0 : is_output && is_high;
+    }
     return is_pwm ? (data[0x88] | data[0x89] << 8) / 255.0 : is_output && is_high;
 }
 
@@ -96,14 +102,15 @@ static uint16_t held;
 
 /* Each millisecond. */
 static avr_cycle_count_t tick(avr_t *avr, avr_cycle_count_t when, void *param) {
-    double drive = duty(avr), wanted = reference(now);
+    double drive = duty(avr), wanted = reference(&spring, now);
     int n;
     (void)param;
     now += 1e-3;
     plant_step(&spring, drive, 1e-3);
-    avr_raise_irq(adc + ADC_IRQ_ADC0, now < loose ? 500 * spring.mm + 2 * chance() : 0);
-    avr_raise_irq(adc + ADC_IRQ_ADC1, 500 * wanted + 2 * chance());
-    if (trace)
+    /* An ADC has noise of a step (5 mV). A sensor without any would look as if it stood still. */
+    avr_raise_irq(adc + ADC_IRQ_ADC0, now < loose ? 500 * spring.mm + 10 * (chance() - 0.5) : 0);
+    avr_raise_irq(adc + ADC_IRQ_ADC1, 500 * wanted + 10 * (chance() - 0.5));
+    if (trace && (strength == 0 || fmod(now + 5e-4, 0.01) < 1e-3))
         fprintf(trace, "%.3f,%.5f,%.5f,%.5f\n", now, wanted, spring.mm, drive);
     listen(0);
     for (n = 0; n < PER_MS && from < to; n++)
@@ -132,10 +139,10 @@ static void open_terminal(void) {
     open(ptsname(in), O_RDWR | O_NOCTTY); /* stays open between two hosts */
 }
 
-static unsigned lowest = RAM_END;
+static unsigned highest, lowest; /* end of the RAM, and of the stack */
 
 static void print_stack(void) {
-    fprintf(stderr, "%u\n", RAM_END - lowest);
+    fprintf(stderr, "%u\n", highest - lowest);
 }
 
 int main(int count, char **args) {
@@ -155,7 +162,8 @@ int main(int count, char **args) {
             continue;
         }
         if (!strcmp(option, "--mega")) {
-            chip = "atmega2560"; /* for programs that print: its pins have other places */
+            chip = "atmega2560";
+            is_mega = 1;
             continue;
         }
         if (!strcmp(option, "--stack")) {
@@ -167,6 +175,7 @@ int main(int count, char **args) {
         if (!strcmp(option, "--hang")) hang = atof(value);
         if (!strcmp(option, "--loose")) loose = atof(value);
         if (!strcmp(option, "--restart")) restart = atof(value);
+        if (!strcmp(option, "--strength")) strength = atof(value);
         if (!strcmp(option, "--noise")) noise = atof(value);
         if (!strcmp(option, "--trace")) trace = fopen(value, "w");
         n++;
@@ -184,7 +193,8 @@ int main(int count, char **args) {
     serial = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), 0);
     adc = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, 0);
     avr_irq_register_notify(serial + UART_IRQ_OUTPUT, said, NULL);
-    plant_start(&spring);
+    highest = lowest = avr->ramend;
+    plant_start(&spring, strength);
     if (trace)
         setvbuf(trace, NULL, _IOLBF, 0); /* whole, however the program ends */
     for (;;) {
@@ -203,7 +213,7 @@ int main(int count, char **args) {
         /* Its two bytes are written one after the other. */
         rests = stack == last ? rests + 1 : 0;
         last = stack;
-        if (stack < lowest && rests == 4 && stack > 0x100)
+        if (stack < lowest && rests == 4 && stack > 0x200)
             lowest = stack;
         if (state == cpu_Done || state == cpu_Crashed)
             return state == cpu_Crashed;

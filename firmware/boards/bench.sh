@@ -7,21 +7,21 @@ fail() { say "$*"; exit 1; }
 # Whether an expression of numbers holds.
 holds() { awk "BEGIN { exit !($1) }"; }
 
-# Records wire.json. `lost_s`: a machine that has much to do may stop the board for a while.
-record() { # DEVICE
+# Records MODEL.json. `lost_s`: a machine that has much to do may stop the board for a while.
+record() { # MODEL DEVICE OPTIONS…
     awk 'BEGIN { print "time,drive"
         for (n = 0; n < 3600; n++)
             printf "%.2f,%.5f\n", n / 20, 0.34 * (1 - cos(0.013 * n) * exp(-n / 3000)) }' > profile.csv
     cat > record.toml << END
 mode = "record"
-log = "recording.csv"
-device = { command = [$1] }
+log = "$1.csv"
+device = { command = [$2] }
 profile = { table = "profile.csv" }
 safety = { lost_s = 2 }
 END
     "$hysteron" run record.toml > /dev/null 2> record.log || fail "$(cat record.log)"
-    "$hysteron" fit recording.csv --input drive --output output --time time \
-        --thermal first-order --levels 10 --bootstrap 0 -o wire.json > fit.log 2>&1 || fail "$(cat fit.log)"
+    "$hysteron" fit "$1.csv" --input drive --output output --time time "${@:3}" \
+        --levels 10 --bootstrap 0 -o "$1.json" > fit.log 2>&1 || fail "$(cat fit.log)"
     # As plant.h has it.
     awk 'BEGIN { print "time,reference"
         for (n = 0; n < 1300; n++) { t = n / 20
@@ -44,9 +44,10 @@ END
     "$hysteron" run "$1.toml" > "$1.said" 2> "$1.log"
 }
 
-# The error of a log from 25 s on, 20 s after the sketch alone began: columns of time, wanted and position.
-rmse() { awk -F, -v t="$2" -v r="$3" -v y="$4" \
-    'NR > 1 && $t > 25 && $t < 60 { sum += ($r - $y) ^ 2; n++ } END { printf "%.4f", sqrt(sum / n) }' "$1"; }
+# The error of a log: columns of time, wanted and position, and from when to when. By default from 25 s
+# on, 20 s after the sketch alone began.
+rmse() { awk -F, -v t="$2" -v r="$3" -v y="$4" -v from="${5:-25}" -v to="${6:-60}" \
+    'NR > 1 && $t > from && $t < to { sum += ($r - $y) ^ 2; n++ } END { printf "%.4f", sqrt(sum / n) }' "$1"; }
 
 # The rows of a chip in the table of errors, which must not differ by more than a tenth.
 tracking() { # CHIP COMPUTER SERIAL BOARD
@@ -76,4 +77,31 @@ safety = { lost_s = 2 }
 END
     "$hysteron" run limit.toml > /dev/null 2> limit.log || true
     grep -q 'limit' limit.log || fail "limit: $(tail -n 1 limit.log)"
+}
+
+# The sketch alone on another actuator: as it was when its model was recorded, a fifth weaker, and a
+# fifth stronger; with the fixed model, with a PI that is twice as strong, and with a learner.
+# `alone SKETCH STRENGTH`, which the chip's script has, runs it for 60 s. Prints rows of a table.
+learning() { # CHIP BOARD
+    local sketch strength model row strong most
+    model=$("$hysteron" export arduino quick.json -o fixed --name fixed --board "$2" --json)
+    strong=$(gains=$model; awk "BEGIN { print 2 * $(gain gain) }"),$(gains=$model; gain integral_s)
+    "$hysteron" export arduino quick.json -o strong --name strong --board "$2" --gains "$strong" > /dev/null
+    "$hysteron" export arduino quick.json -o learns --name learns --board "$2" --adaptation > /dev/null
+    for sketch in fixed strong learns; do
+        compile_alone $sketch
+        for strength in 1.0 0.8 1.2; do alone_on $sketch $strength; done &
+    done
+    wait
+    for strength in 1.0 0.8 1.2; do
+        row=()
+        for sketch in fixed strong learns; do
+            tail -n 2 $sketch$strength.txt | grep -q 'off:0 overruns:0' \
+                || fail "$1, $sketch, $strength: $(tail -n 1 $sketch$strength.txt)"
+            row+=("$(rmse $sketch$strength.trace 1 2 3 30 60)")
+        done
+        printf '| %s | model × %s | %s | %s | %s |\n' "$1" $strength "${row[@]}"
+        [ $strength = 1.2 ] && most=0.95 || most=1.05
+        holds "${row[2]} <= $most * ${row[0]}" || fail "$1: the learner brings nothing: ${row[*]}"
+    done
 }

@@ -19,6 +19,10 @@ static void hang(void) {
     }
 }
 
+/* What a watchdog calls before it starts the chip again. */
+void not_masked(void);
+__attribute__((weak)) void not_masked(void) { hang(); }
+
 struct vectors {
     uint32_t *stack;
     void (*handler[15])(void);
@@ -26,7 +30,7 @@ struct vectors {
 
 __attribute__((section(".vectors"), used)) static const struct vectors vectors = {
     &stack_top,
-    {reset, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang},
+    {reset, not_masked, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang},
 };
 
 #define CPACR (*(volatile uint32_t *)0xE000ED88u) /* coprocessor access */

@@ -4,7 +4,12 @@
  * host's answer to a sample: a slow host is no delay. The trace has a row for each 10 ms: time,
  * wanted and actual position, drive.
  *
- * CUT_S and LOOSE_S: when the line is cut, and the slider comes loose. */
+ * CUT_S and LOOSE_S: when the line is cut, and the slider comes loose. HANG_S and RESTART_S: when the
+ * sketch hangs, and when the chip starts again by itself. STRENGTH: another actuator (plant.h).
+ *
+ * The chip's watchdog starts a sketch again after a second, with the drive off. This core switches it
+ * on, and looks after it between two calls of `loop`, as cores of some boards do: the sketches know
+ * that of an AVR alone. */
 #include "Arduino.h"
 extern "C" {
 #include "../avr/plant.h"
@@ -17,6 +22,16 @@ extern "C" {
 #define LOOSE_S 1e9
 #endif
 
+#ifndef HANG_S
+#define HANG_S 1e9
+#endif
+#ifndef RESTART_S
+#define RESTART_S 1e9
+#endif
+#ifndef STRENGTH
+#define STRENGTH 0
+#endif
+
 #define TIMER ((volatile uint32_t *)0x40000000u) /* 25 MHz; control, value, reload */
 #define TICKS_US 25
 enum { DATA, STATE, CONTROL, INTERRUPTS, DIVIDER }; /* registers of a UART */
@@ -26,14 +41,31 @@ enum { SENDING_FULL = 1, RECEIVED = 2 };
 
 Uart Serial(0x40004000u);
 static Uart trace(0x40005000u);
-static plant spring;
-static uint64_t ticks;         /* that have passed */
-static uint32_t last;          /* the timer, when it was read */
-static unsigned long alive_ms; /* until which the spring was computed */
-static double drive;
+static uint32_t last; /* the timer, when it was read */
 static bool at_start = true, is_sample, waits, is_gone;
 
-static double now_s() { return alive_ms / 1000.0; }
+/* What a restart of the chip does not touch. It lies behind the image's RAM. */
+struct outside {
+  plant spring;
+  volatile uint64_t ticks; /* that have passed; also before a loop without end */
+  unsigned long alive_ms;  /* until which the spring was computed */
+  double drive;
+  uint32_t is_there;       /* THERE behind the first start */
+  bool had_fault;
+};
+#define THERE 0x600DF00Du
+static outside &world = *(outside *)0x20300000u;
+
+#define WATCHDOG ((volatile uint32_t *)0x40008000u) /* load, value, control, clear */
+#define RESTART (*(volatile uint32_t *)0xE000ED0Cu)
+#define HALF_S (500000u * TICKS_US) /* to the watchdog's first call, and to the second */
+static void hang() {
+  for (;;) {
+  }
+}
+static void feed() { WATCHDOG[3] = 1; } /* it counts anew */
+
+static double now_s() { return world.alive_ms / 1000.0; }
 
 /* Goes on from here; what was between does not count. */
 static void skip() { last = TIMER[1]; }
@@ -41,31 +73,49 @@ static void skip() { last = TIMER[1]; }
 /* Brings the spring to the present time. */
 static void live() {
   const uint32_t now = TIMER[1];
-  ticks += last - now;
-  while (alive_ms + STEP_MS <= ticks / (1000 * TICKS_US)) {
-    plant_step(&spring, drive, STEP_MS / 1000.0);
-    alive_ms += STEP_MS;
-    if (alive_ms % 10 != 0) continue;
-    trace.print(now_s(), 3), trace.print(','), trace.print(reference(now_s()), 5);
-    trace.print(','), trace.print(spring.mm, 5), trace.print(','), trace.print(drive, 5), trace.print('\n');
+  world.ticks += last - now;
+  while (world.alive_ms + STEP_MS <= world.ticks / (1000 * TICKS_US)) {
+    plant_step(&world.spring, world.drive, STEP_MS / 1000.0);
+    world.alive_ms += STEP_MS;
+    if (world.alive_ms % 10 != 0) continue;
+    trace.print(now_s(), 3), trace.print(','), trace.print(reference(&world.spring, now_s()), 5);
+    trace.print(','), trace.print(world.spring.mm, 5), trace.print(',');
+    trace.print(world.drive, 5), trace.print('\n');
   }
   skip();
 }
 
+/* The watchdog's first call: the sketch hangs. It goes on hanging until the second, and the spring
+ * follows when the chip has started again. When the emulator gets to that is not the chip's time. */
+extern "C" void not_masked() {
+  world.ticks += last - TIMER[1] + HALF_S;
+  hang();
+}
+
 unsigned long micros() {
   live();
-  return (unsigned long)(ticks / TICKS_US);
+  return (unsigned long)(world.ticks / TICKS_US);
 }
 unsigned long millis() { return micros() / 1000; }
 
 int analogRead(uint8_t pin) {
   live();
-  const double mm = pin == A1 ? reference(now_s()) : now_s() < LOOSE_S ? spring.mm : 0;
-  return (int)(mm / 10 * 1023 + (double)rand() / RAND_MAX * 0.4);
+  if (!world.had_fault && now_s() >= HANG_S) {
+    world.had_fault = true;
+    hang();
+  }
+  if (!world.had_fault && now_s() >= RESTART_S) {
+    world.had_fault = true;
+    world.drive = 0; /* a pin of a chip in reset drives no gate */
+    RESTART = 0x05FA0004u;
+    hang();
+  }
+  const double mm = pin == A1 ? reference(&world.spring, now_s()) : now_s() < LOOSE_S ? world.spring.mm : 0;
+  return (int)(mm / 10 * 1023 + (double)rand() / RAND_MAX);
 }
 void analogWrite(uint8_t, int value) {
   live();
-  drive = value / 255.0;
+  world.drive = value / 255.0;
 }
 void pinMode(uint8_t, uint8_t) {}
 
@@ -94,8 +144,7 @@ int Uart::available() {
   live();
   if (waits) {
     long looks = PATIENCE;
-    while (!(port[STATE] & RECEIVED) && --looks > 0) {
-    }
+    while (!(port[STATE] & RECEIVED) && --looks > 0) feed();
     is_gone = looks == 0;
     waits = !is_gone;
     skip();
@@ -137,9 +186,20 @@ int main() {
   for (void (**init)(void) = init_start; init < init_end; init++) (*init)();
   TIMER[2] = TIMER[1] = 0xFFFFFFFFu;
   TIMER[0] = 1;
-  plant_start(&spring);
+  if (world.is_there != THERE) {
+    world = outside();
+    world.is_there = THERE;
+    plant_start(&world.spring, STRENGTH);
+  }
   trace.begin(0);
   skip();
+  live();
+  world.drive = 0; /* pins are inputs after a start */
+  WATCHDOG[0] = HALF_S;
+  WATCHDOG[2] = 3;
   setup();
-  for (;;) loop();
+  for (;;) {
+    feed();
+    loop();
+  }
 }

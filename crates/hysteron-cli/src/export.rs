@@ -121,6 +121,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
         name: args.name.as_deref(),
         source: &args.model,
         board: args.board.into(),
+        adaptation: args.adaptation,
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
@@ -138,6 +139,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
             "sketch_bytes": { "flash": memory.flash, "ram": memory.ram },
             "board_bytes": { "flash": options.board.flash(), "ram": options.board.ram() },
             "follows": memory.follows,
+            "learns": args.adaptation,
             "control": loop_json(&control),
         });
         return print(&object.to_string());

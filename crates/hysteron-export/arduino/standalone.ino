@@ -57,6 +57,7 @@ void setup() {
   is_off |= hys_controller_start(&controller, &@name@_control, @wanted@, @followed@, under_way,
                                  @NAME@_LATE + 1) != HYS_OK;
   is_off |= hys_controller_go_on_from(&controller, 0) != HYS_OK;
+@shadow_start@
   // After a restart the wire may be hot, and the model starts cold: it begins when both are.
   due = micros() + (unsigned long)(HEAT_S * 1e6);
 #if defined(__AVR__)
@@ -84,12 +85,14 @@ void loop() {
   heat += (drive - heat) * DT_US * 1e-6 / HEAT_S;
   if (heat > HEAT_MOST || mm < MM_LOW || mm > MM_HIGH) is_off = true;
   if (action.status & HYS_SAFE) is_off = true; // no reading, or one that stands still
+@shadow_step@
   apply(is_off ? 0 : action.drive);
 
   if (++number % 5 == 0) {
     Serial.print(F("wanted:")), Serial.print(wanted, 3);
     Serial.print(F(" position:")), Serial.print(mm, 3);
     Serial.print(F(" drive:")), Serial.print(drive, 3);
+@shadow_print@
     Serial.print(F(" off:")), Serial.print(is_off);
     Serial.print(F(" overruns:")), Serial.println(overruns);
   }

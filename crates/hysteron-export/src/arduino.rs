@@ -19,6 +19,8 @@ pub struct ArduinoOptions<'a> {
     pub source: &'a Path,
     /// What it has to fit.
     pub board: Board,
+    /// Whether the model learns on the board, by increments, as with [`COptions::adaptation`].
+    pub adaptation: bool,
 }
 
 /// What was written.
@@ -35,7 +37,8 @@ pub struct Arduino {
 /// (`standalone`). On an AVR the tables of the model stay in flash.
 ///
 /// What fits the board's memory is decided by arithmetic, before anything is written. Where the
-/// model does not fit twice, the sketch does without the state that follows the drive.
+/// model does not fit twice, the sketch does without the state that follows the drive. With
+/// [`ArduinoOptions::adaptation`] `standalone` learns, and the tables are in RAM.
 ///
 /// Files of an earlier export that were not edited since are replaced, all together or not at all.
 ///
@@ -52,6 +55,7 @@ pub struct Arduino {
 ///     name: None,
 ///     source: "wire.json".as_ref(),
 ///     board: Board::Uno,
+///     adaptation: false,
 /// };
 /// let folder = tempfile::tempdir()?;
 /// let made = arduino(&model, folder.path(), &options, &CSampling::default(), &scheme)?;
@@ -74,13 +78,21 @@ pub fn arduino<'a>(
         real: CReal::Float,
         name: options.name,
         source: options.source,
-        adaptation: false,
+        adaptation: options.adaptation,
     };
     let (mut export, sources) = c_texts_controlled(model, &c, sampling, Some(scheme), true)?;
     let memory = BoardMemory::of(&export, options.board).map_err(|what| {
-        let remedy = "fit with less {}, or name another {}";
-        let settings = [Setting::any("levels"), Setting::any("board")];
-        Error::Export(what).remedied(Remedy::new(remedy, settings))
+        let fewer = [Setting::any("levels"), Setting::any("board")];
+        let error = Error::Export(what);
+        match options.adaptation {
+            false => error.remedied(Remedy::new("fit with less {}, or name another {}", fewer)),
+            true => {
+                let [levels, board] = fewer;
+                let settings = [levels, board, Setting::on("adaptation")];
+                let words = "fit with less {}, name another {}, or export it without {}";
+                error.remedied(Remedy::new(words, settings))
+            }
+        }
     })?;
     let own = texts::files(model, &export, memory.follows);
     let names = export.files.iter().map(|file| Path::new("src").join(file));

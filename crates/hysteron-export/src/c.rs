@@ -16,7 +16,7 @@ mod stages;
 mod text;
 mod written;
 
-use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, DELAY, STAGES};
+use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, DELAY, SHADOW, STAGES};
 use constants::Constants;
 use hysteron::control::Scheme;
 use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
@@ -125,7 +125,8 @@ pub fn c_sampled<'a>(
 /// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
 /// of [`hysteron::control::Controller`] with the fixed model as its compensator, which
 /// stands in the place of that of `scheme`. A filter, a gate and an inner loop are not to be had
-/// there. With [`COptions::adaptation`] the loop may also have states of the model that learns.
+/// there. With [`COptions::adaptation`] a learner runs in the shadow of the fixed model
+/// (`hysteron_mcu_shadow.h`, `.c`), as in [`hysteron::control::Compensator::shadowed`].
 ///
 /// # Errors
 /// As [`c_sampled`]; [`Error::Export`] too for a model with a load or without an inverse, and for
@@ -227,7 +228,11 @@ fn texts<T: Number>(
         Some(scheme) => {
             control::check(scheme, model, &constants, sampling.dt)?;
             let staged = constants.stages.is_some();
-            Some(control::text::<T>(scheme, model, (&name, staged))?)
+            let mut around = control::text::<T>(scheme, model, (&name, staged))?;
+            if options.adaptation {
+                around.include = Some(SHADOW[0].0);
+            }
+            Some(around)
         }
     };
     let late = scheme.map(|scheme| control::late(scheme, model));
@@ -242,6 +247,7 @@ fn texts<T: Number>(
     if scheme.is_some() {
         algorithm.extend(CONTROL);
         algorithm.extend(constants.stages.iter().flat_map(|_| CONTROL_STAGES));
+        algorithm.extend(options.adaptation.then_some(SHADOW).iter().flatten());
     }
     algorithm.extend(dead.iter().flat_map(|_| DELAY));
     let own = ["h", "c"].map(|end| format!("{name}.{end}"));
@@ -268,6 +274,7 @@ fn texts<T: Number>(
     let texts = algorithm.iter().map(|(_, text)| {
         let text = text.replace(&float, &wanted);
         let text = match alone {
+            true if options.adaptation => algorithm::with_tables_in_ram(&text),
             true => algorithm::with_stages(&text, &export.stages),
             false => text,
         };

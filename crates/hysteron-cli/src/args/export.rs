@@ -17,7 +17,8 @@ pub(crate) enum Export {
     /// A library with two sketches for the Arduino IDE and PlatformIO
     #[command(after_help = "Examples:\n\
         \x20 hysteron export arduino wire.json -o ~/Arduino/libraries/wire\n\
-        \x20 hysteron export arduino wire.json -o wire --board mega --dt 0.02")]
+        \x20 hysteron export arduino wire.json -o wire --board mega --dt 0.02\n\
+        \x20 hysteron export arduino piezo.json -o piezo --board mega --adaptation")]
     Arduino(ExportArduino),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
     #[command(after_help = "Examples:\n\
@@ -99,6 +100,9 @@ pub(crate) struct ExportArduino {
     /// The board that it has to fit
     #[arg(long, value_enum, default_value_t = Board::Uno)]
     pub(crate) board: Board,
+    /// Also write the code with which the weights adapt on the board
+    #[arg(long)]
+    pub(crate) adaptation: bool,
     /// The sample time on the board
     #[arg(
         long,

@@ -28,9 +28,14 @@ const MORE: [(&str, usize); 7] = [
     ("spacing", 1000),
 ];
 
+/// What a learner adds: code, constants in RAM beside the weights (the options of *increments*), RAM
+/// of what chooses between it and the fixed model, and stack.
+const LEARNER: [usize; 4] = [24_500, 52, 16, 50];
+
 /// Bytes of RAM of the same sketch without the model: Arduino's core, its serial line, the sketch's
-/// own.
+/// own. A Mega's has four serial lines.
 const OWN: usize = 250;
+const OWN_MEGA: usize = 760;
 
 /// Bytes for the stack, without stages and with them: a little more than was measured.
 const STACK: [usize; 2] = [350, 520];
@@ -76,7 +81,8 @@ impl Board {
 pub struct BoardMemory {
     /// The model's constants: flash.
     pub model_flash: usize,
-    /// The model's constants but for the tables, its states, and the controller: RAM.
+    /// The model's constants but for the tables, its states, and the controller: RAM. With a learner
+    /// also that and the tables.
     pub model_ram: usize,
     /// All flash: at most.
     pub flash: usize,
@@ -102,17 +108,31 @@ impl BoardMemory {
         }
         let need = |follows: bool| {
             let states = (1 + usize::from(follows)) * (avr.state + avr.turns);
-            let model_ram = avr.constants - avr.table + states + avr.controller.unwrap_or(0);
+            // Of all learners' constants the linker keeps those of one.
+            let [learner_code, options, shadow, learner_stack] = match avr.adaptation {
+                Some(_) => LEARNER,
+                None => [0; 4],
+            };
+            let constants = avr.constants - avr.learners + options;
+            let learner = avr.adaptation.map_or(0, |bytes| {
+                bytes + avr.state + avr.turns + avr.table + shadow
+            });
+            let own = match board {
+                Board::Mega => OWN_MEGA,
+                Board::Uno | Board::Large => OWN,
+            };
+            let controller = avr.controller.unwrap_or(0);
+            let model_ram = constants - avr.table + states + controller + learner;
             let staged = usize::from(!export.stages.is_empty());
             let more = MORE
                 .iter()
                 .filter(|(stage, _)| export.stages.contains(stage));
             let code = CODE[staged] + more.map(|(_, bytes)| bytes).sum::<usize>();
             Self {
-                model_flash: avr.constants,
+                model_flash: constants,
                 model_ram,
-                flash: avr.constants + code,
-                ram: model_ram + OWN + STACK[staged],
+                flash: constants + code + learner_code,
+                ram: model_ram + own + STACK[staged] + learner_stack,
                 follows,
             }
         };
@@ -120,12 +140,15 @@ impl BoardMemory {
             board.flash().is_none_or(|most| memory.flash <= most)
                 && board.ram().is_none_or(|most| memory.ram <= most)
         };
-        let (both, one) = (need(true), need(false));
+        // What a learner is compared with follows the drive.
+        let learns = avr.adaptation.is_some();
+        let (both, one) = (need(true), need(learns));
         let (flash, ram) = (board.flash().unwrap_or(0), board.ram().unwrap_or(0));
         [both, one].into_iter().find(fits).ok_or_else(|| {
             format!(
-                "K = {} needs {} bytes of flash and {} of RAM, and the {} has {flash} and {ram}",
+                "K = {}{} needs {} bytes of flash and {} of RAM, and the {} has {flash} and {ram}",
                 export.levels,
+                if learns { " with a learner" } else { "" },
                 one.flash,
                 one.ram,
                 board.name()

@@ -7,8 +7,30 @@ use std::path::PathBuf;
 const DEVICE: &str = include_str!("../../arduino/device.ino");
 const STANDALONE: &str = include_str!("../../arduino/standalone.ino");
 
+/// The parts of a sketch that learns.
+const LEARNER_STATES: &str = "\
+// ---- What learns: it is used while it predicts better than the model as it was fitted ----
+hys_adaptive adaptive;
+hys_shadow shadow;
+hys_turn turns_learned[@NAME@_TURNS];
+hys_real memory[@NAME@_INCREMENTS_NUMBERS];
+";
+const LEARNER_START: &str = "  \
+  is_off |= hys_adapt_start(&adaptive, &@name@, @name@_weights, @name@.offset,
+                            &@name@_increments, memory, @NAME@_INCREMENTS_NUMBERS,
+                            turns_learned, @NAME@_TURNS) != HYS_OK;
+";
+const SHADOW_START: &str = "  \
+  is_off |= hys_shadow_start(&shadow, &controller, &adaptive) != HYS_OK;
+";
+const SHADOW_STEP: &str = "  \
+  // Not from a drive at its limit, nor from a reading in doubt: it leaves them out.
+  if (!is_off && hys_shadow_step(&shadow, mm, &action) != HYS_OK) is_off = true;
+";
+const SHADOW_PRINT: &str = "    Serial.print(F(\" learned:\")), Serial.print(shadow.learner);\n";
+
 /// What the editor colours.
-const TYPES: [&str; 7] = [
+const TYPES: [&str; 9] = [
     "hys_real",
     "hys_turn",
     "hys_state",
@@ -16,8 +38,10 @@ const TYPES: [&str; 7] = [
     "hys_control",
     "hys_controller",
     "hys_action",
+    "hys_adaptive",
+    "hys_shadow",
 ];
-const FUNCTIONS: [&str; 9] = [
+const FUNCTIONS: [&str; 12] = [
     "hys_start",
     "hys_step",
     "hys_inverse_step",
@@ -27,6 +51,9 @@ const FUNCTIONS: [&str; 9] = [
     "hys_controller_start",
     "hys_controller_go_on_from",
     "hys_controller_step",
+    "hys_adapt_start",
+    "hys_shadow_start",
+    "hys_shadow_step",
 ];
 const LITERALS: [&str; 6] = [
     "HYS_OK",
@@ -98,29 +125,43 @@ fn standalone(model: &Model, export: &CExport, follows: bool) -> String {
         .iter()
         .map(|state| format!("{}[{shout}_TURNS]", turns(state)))
         .collect();
-    let states = format!(
-        "{kind} {};\nhys_turn {};",
+    let mut states = format!(
+        "{kind} {};\nhys_turn {};\n",
         all.join(", "),
         arrays.join(", ")
     );
+    let learns = export.memory.adaptation.is_some();
+    if learns {
+        states += &LEARNER_STATES.replace("@NAME@", &shout);
+    }
     let mut starts = Vec::new();
+    let restore = |state: &str| match !staged && model.fitted().is_some() {
+        true => format!(
+            "  is_off |= hys_restore(&{state}, {name}_start, sizeof {name}_start / sizeof \
+             {name}_start[0],\n                        {name}_start_input) != HYS_OK;\n"
+        ),
+        false => String::new(),
+    };
     for state in all {
         starts.push(format!(
-            "  is_off |= {start}(&{name}, &{state}, {}, {shout}_TURNS) != HYS_OK;",
+            "  is_off |= {start}(&{name}, &{state}, {}, {shout}_TURNS) != HYS_OK;\n",
             turns(state)
         ));
-        if !staged && model.fitted().is_some() {
-            starts.push(format!(
-                "  is_off |= hys_restore(&{state}, {name}_start, sizeof {name}_start / sizeof \
-                 {name}_start[0],\n                        {name}_start_input) != HYS_OK;"
-            ));
-        }
+        starts.push(restore(state));
     }
+    if learns {
+        starts.push(LEARNER_START.into());
+        starts.push(restore("adaptive.state"));
+    }
+    let learner = |text: &'static str| if learns { text } else { "" };
     let (off, on) = model.output_range();
     let (low, high) = (off.min(on), off.max(on));
     STANDALONE
-        .replace("@states@", &states)
-        .replace("@start@", &starts.join("\n"))
+        .replace("@states@\n", &states)
+        .replace("@start@\n", &starts.concat())
+        .replace("@shadow_start@\n", learner(SHADOW_START))
+        .replace("@shadow_step@\n", learner(SHADOW_STEP))
+        .replace("@shadow_print@\n", learner(SHADOW_PRINT))
         .replace("@wanted@", &format!("&wanted{operators}"))
         .replace(
             "@followed@",

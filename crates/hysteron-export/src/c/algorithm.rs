@@ -64,6 +64,18 @@ pub(super) const CONTROL: [(&str, &str); 2] = [
     ),
 ];
 
+/// The same for a control loop whose model learns.
+pub(super) const SHADOW: [(&str, &str); 2] = [
+    (
+        "hysteron_mcu_shadow.h",
+        include_str!("../../mcu/hysteron_mcu_shadow.h"),
+    ),
+    (
+        "hysteron_mcu_shadow.c",
+        include_str!("../../mcu/hysteron_mcu_shadow.c"),
+    ),
+];
+
 /// The same for a control loop around a model with stages.
 pub(super) const CONTROL_STAGES: [(&str, &str); 1] = [(
     "hysteron_mcu_control_stages.c",
@@ -110,6 +122,14 @@ const BITS: [&str; 8] = [
     "latent",
 ];
 
+/// The header of a program whose model learns: its tables are in RAM, on an AVR too. A library for
+/// Arduino cannot set a flag.
+pub(super) fn with_tables_in_ram(text: &str) -> String {
+    const LAYOUT: &str = "/* Tables are the most of a model.";
+    let define = "#ifndef HYS_TABLES_IN_RAM\n#define HYS_TABLES_IN_RAM\n#endif\n\n";
+    text.replacen(LAYOUT, &format!("{define}{LAYOUT}"), 1)
+}
+
 /// A text of the algorithm with the code of these stages alone.
 pub(super) fn with_stages(text: &str, stages: &[&str]) -> String {
     let all = (1 << BITS.len()) - 1;
@@ -123,6 +143,13 @@ pub(super) fn with_stages(text: &str, stages: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_place_for_tables_in_ram_is_found() {
+        let text = with_tables_in_ram(HEADER);
+        let defined = text.find("#define HYS_TABLES_IN_RAM").unwrap();
+        assert!(defined < text.find("#if defined(__AVR__)").unwrap());
+    }
 
     #[test]
     fn the_line_of_the_stages_is_found() {

@@ -164,6 +164,7 @@ impl<T: Number> Constants<T> {
         let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {
             table: table * T::BYTES,
+            learners: learns.map_or(0, |(bytes, _)| bytes),
             constants: model
                 + stages
                 + (table + start) * T::BYTES

@@ -40,6 +40,8 @@ pub struct CMemory {
     pub constants: usize,
     /// Of them, the Everett tables.
     pub table: usize,
+    /// Of them, those of the learners, without the weights.
+    pub learners: usize,
     /// A state: RAM.
     pub state: usize,
     /// Of it, the operators at the present load, where the weights depend on the load.

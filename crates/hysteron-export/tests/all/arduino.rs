@@ -15,6 +15,15 @@ fn model(levels: usize, body: bool) -> Model {
 }
 
 fn write(model: &Model, folder: &Path, board: Board) -> hysteron::Result<BoardMemory> {
+    written(model, folder, board, false)
+}
+
+fn written(
+    model: &Model,
+    folder: &Path,
+    board: Board,
+    adaptation: bool,
+) -> hysteron::Result<BoardMemory> {
     let gains = Gains {
         gain: 0.05,
         integral_s: 0.5,
@@ -32,6 +41,7 @@ fn write(model: &Model, folder: &Path, board: Board) -> hysteron::Result<BoardMe
         name: None,
         source: Path::new("my spring.json"),
         board,
+        adaptation,
     };
     let sampling = CSampling {
         dt: model.is_timed().then_some(0.05),
@@ -125,4 +135,48 @@ fn what_does_not_fit_is_refused_with_numbers() {
     let mega = write(&model(60, true), &library, Board::Mega).unwrap();
     assert!(mega.follows && mega.ram <= 8192, "{mega:?}");
     write(&model(200, true), &library, Board::Large).unwrap();
+}
+
+#[test]
+fn a_sketch_that_learns_is_written_where_it_fits() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("my_spring");
+    let write =
+        |levels, body, board| written(&model(levels, body), &library, board, true).map(|_| ());
+    let refusals = [
+        (
+            5,
+            false,
+            Board::Uno,
+            ["with a learner", "ATmega328P", "adaptation"],
+        ),
+        (20, false, Board::Mega, ["K = 20", "ATmega2560", "levels"]),
+        (
+            5,
+            true,
+            Board::Large,
+            ["stages", "cannot learn", "adaptation"],
+        ),
+    ];
+    for (levels, body, board, words) in refusals {
+        let said = write(levels, body, board).unwrap_err().to_string();
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+        assert!(!library.exists());
+    }
+    for (levels, board) in [(10, Board::Mega), (20, Board::Large)] {
+        write(levels, false, board).unwrap();
+        let read = |name: &str| std::fs::read_to_string(library.join(name)).unwrap();
+        let sketch = read("examples/standalone/standalone.ino");
+        assert!(
+            sketch.contains("hys_shadow_step(&shadow, mm, &action)"),
+            "{sketch}"
+        );
+        assert!(
+            !sketch.contains('@') && sketch.lines().count() <= 150,
+            "{sketch}"
+        );
+        assert!(sketch.lines().all(|line| line.len() <= 100), "{sketch}");
+        assert!(read("src/hysteron_mcu.h").contains("#define HYS_TABLES_IN_RAM\n"));
+        assert!(library.join("src/hysteron_mcu_shadow.c").exists());
+    }
 }

@@ -14,6 +14,7 @@ mod files;
 mod fmu;
 mod page;
 mod rounding;
+mod shadow;
 mod staged;
 mod vectors;
 mod vectors_staged;

@@ -378,7 +378,7 @@ fn a_plain_model_does_without_the_stages() {
         .map(|file| std::fs::read(file).unwrap())
         .collect();
     assert!(before == after);
-    assert_eq!(made.files.len(), 12);
+    assert_eq!(made.files.len(), 14);
 }
 
 /// A plain model that starts where its fit found it carries its turning points.
