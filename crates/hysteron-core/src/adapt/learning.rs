@@ -32,18 +32,13 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             return Outcome::Frozen;
         }
         let ends = self.increment_ends(position);
-        let Adaptation { gate, burst, .. } = self.options;
         if !(moved || ends) {
-            // An output that goes there and back meanwhile says that this is no rest.
-            let stuck = match gate > T::ZERO {
-                true => self.find_stuck(state, measured, None),
-                false => None,
-            };
-            return stuck.map_or(Outcome::AtRest, Channel::outcome);
+            return Outcome::AtRest;
         }
+        let Adaptation { gate, burst, .. } = self.options;
         let believed = self.gate.judge(error, gate, burst) != Verdict::Refused;
         if gate > T::ZERO
-            && let Some(channel) = self.find_stuck(state, measured, Some(believed))
+            && let Some(channel) = self.find_stuck(state, measured, believed)
         {
             return channel.outcome();
         }
@@ -78,13 +73,8 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
     }
 
     /// The channel that stands still. If one begins to, the parameters from before return; the
-    /// model's table is not written. Whether the reading is believed is `None` at rest.
-    fn find_stuck<S>(
-        &mut self,
-        state: &State<T, S>,
-        measured: T,
-        believed: Option<bool>,
-    ) -> Option<Channel>
+    /// model's table is not written.
+    fn find_stuck<S>(&mut self, state: &State<T, S>, measured: T, believed: bool) -> Option<Channel>
     where
         S: Memory<Turn<T>>,
     {
@@ -95,7 +85,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             measured,
         };
         let slices = self.layout.cut(self.memory.as_mut());
-        match self.watch.look_if(reading, believed) {
+        match self.watch.look(reading, believed) {
             Watched::Moving => return None,
             Watched::Piece { alive } => {
                 if alive {

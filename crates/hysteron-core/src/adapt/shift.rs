@@ -421,21 +421,19 @@ impl<T: Real> ShiftEstimator<T> {
         let moved = (here - learned).max(learned - here) / self.level;
         // Also for NaN, where temperatures overflow.
         let moves = moved > T::ZERO && moved >= self.options.movement;
-        let ShiftOptions { gate, burst, .. } = self.options;
-        let reading = expected.filter(|_| gate > T::ZERO).map(|expected| Reading {
-            position: here / self.level,
-            expected,
-            measured,
-        });
         if !moves {
-            // An output that goes there and back meanwhile says that this is no rest.
-            let stuck = reading.and_then(|reading| self.find_stuck(reading, None));
-            return stuck.map_or(Outcome::AtRest, Channel::outcome);
+            return Outcome::AtRest;
         }
         let most = self.options.spread * self.options.spread;
+        let ShiftOptions { gate, burst, .. } = self.options;
         let verdict = self.gate.judge(error, gate, burst);
-        if let Some(reading) = reading {
-            if let Some(channel) = self.find_stuck(reading, Some(verdict != Verdict::Refused)) {
+        if let Some(expected) = expected.filter(|_| gate > T::ZERO) {
+            let reading = Reading {
+                position: here / self.level,
+                expected,
+                measured,
+            };
+            if let Some(channel) = self.find_stuck(reading, verdict != Verdict::Refused) {
                 self.learned = Some(here);
                 self.gate.settle(error);
                 return channel.outcome();
@@ -477,11 +475,10 @@ impl<T: Real> ShiftEstimator<T> {
         Outcome::Learned
     }
 
-    /// The channel that stands still. If one begins to, the shift from before returns. Whether the
-    /// reading is believed is `None` at rest.
-    fn find_stuck(&mut self, reading: Reading<T>, believed: Option<bool>) -> Option<Channel> {
+    /// The channel that stands still. If one begins to, the shift from before returns.
+    fn find_stuck(&mut self, reading: Reading<T>, believed: bool) -> Option<Channel> {
         let already = self.watch.stuck().is_some();
-        match self.watch.look_if(reading, believed) {
+        match self.watch.look(reading, believed) {
             Watched::Moving => {}
             Watched::Piece { alive } => {
                 if alive {

@@ -192,18 +192,6 @@ impl<T: Real> Watch<T> {
         }
     }
 
-    /// As [`Watch::look`]; and with `None` at a reading at which the input rests. An input that is
-    /// frozen looks like one that rests, but for an output that goes there and back meanwhile. One
-    /// that has not moved yet says nothing: much may settle before an experiment.
-    pub fn look_if(&mut self, at: Reading<T>, believed: Option<bool>) -> Watched {
-        match believed {
-            None if self.input.longest == T::ZERO => {
-                self.stuck.map_or(Watched::Moving, Watched::Stuck)
-            }
-            believed => self.look(at, believed.unwrap_or(false)),
-        }
-    }
-
     /// Whether the output seems to stand still at the end of the readings, though not for a whole
     /// cycle yet: for how many of the readings, the last ones. Only sensible where nothing follows.
     ///

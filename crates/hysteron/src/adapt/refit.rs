@@ -201,19 +201,14 @@ impl Refitter {
             return Ok((Outcome::Frozen, false));
         }
         let position = state.position();
-        let Refit { gate, burst, .. } = self.options;
         if (position - self.learned).abs() <= self.options.movement {
-            // An output that goes there and back meanwhile says that this is no rest.
-            let stuck = match gate > 0.0 {
-                true => self.find_stuck(state, measured, None)?,
-                false => None,
-            };
-            return Ok((stuck.map_or(Outcome::AtRest, Channel::outcome), false));
+            return Ok((Outcome::AtRest, false));
         }
         self.learned = position;
+        let Refit { gate, burst, .. } = self.options;
         let believed = self.gate.judge(error, gate, burst) != Verdict::Refused;
         if gate > 0.0
-            && let Some(channel) = self.find_stuck(state, measured, Some(believed))?
+            && let Some(channel) = self.find_stuck(state, measured, believed)?
         {
             return Ok((channel.outcome(), false));
         }
@@ -229,12 +224,12 @@ impl Refitter {
         Ok((Outcome::Waiting, due))
     }
 
-    /// The channel that stands still. Whether the reading is believed is `None` at rest.
+    /// The channel that stands still.
     fn find_stuck(
         &mut self,
         state: &OperatorState,
         measured: f64,
-        believed: Option<bool>,
+        believed: bool,
     ) -> Result<Option<Channel>> {
         self.there.clone_from(state);
         self.alone.rebase(&mut self.there)?;
@@ -243,7 +238,7 @@ impl Refitter {
             expected: self.alone.output(&self.there),
             measured,
         };
-        if let Watched::Piece { alive } = self.watch.look_if(reading, believed) {
+        if let Watched::Piece { alive } = self.watch.look(reading, believed) {
             let now = (self.weights.clone(), self.offset);
             let before = std::mem::replace(&mut self.pending, now);
             if alive {

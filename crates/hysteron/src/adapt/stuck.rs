@@ -2,6 +2,7 @@
 
 use crate::model::Model;
 use crate::recording::Recording;
+use crate::series::frozen::frozen;
 use hysteron_core::{Channel, Outcome, Reading, Watch};
 use serde::{Serialize, Serializer};
 use std::ops::Range;
@@ -70,6 +71,16 @@ impl Stuck {
             }
             goes_on = true;
         }
+        // An input that is frozen to the last digit is one at rest to a learner.
+        for samples in frozen(&recording.input, &recording.output) {
+            let apart =
+                |one: &Self| one.samples.end <= samples.start || samples.end <= one.samples.start;
+            if found.iter().all(apart) {
+                let channel = Channel::Input;
+                found.push(Self { channel, samples });
+            }
+        }
+        found.sort_by_key(|one| one.samples.start);
         found
     }
 }
