@@ -177,7 +177,7 @@ fn a_loop_and_a_library_for_arduino() {
         folder.path(),
         &format!("export c spring.json -o both --controller --adaptation --dt 0.05 {gains}"),
     );
-    assert_eq!(said["files"].as_array().unwrap().len(), 15);
+    assert_eq!(said["files"].as_array().unwrap().len(), 17);
     assert!(said["ram_bytes"]["adaptation"].is_u64() && said["control"]["dt"] == 0.05);
     // Without gains they come from the model.
     let said = json(
