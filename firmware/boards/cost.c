@@ -2,8 +2,8 @@
  * every bit of the results, and what one call took at most. Prints five lines: hash, step, inverse
  * step, sample of the loop (in units of port.h), and bytes of stack. */
 #include MODEL_HEADER
+#include "bits.h"
 #include "port.h"
-#include <string.h>
 
 #ifdef STAGED
 #define STATE hys_actuator_state
@@ -24,22 +24,9 @@ static hys_turn turns[STATES][TURNS];
 static STATE states[STATES];
 static hys_controller controller;
 static hys_real under_way[LATE + 1];
-static uint32_t hash = 2166136261u, seed = 1, most[3];
+static uint32_t most[3];
 
 enum { FORWARD, BACK, LOOP };
-
-/* A number in [0, 1), the same everywhere. */
-static hys_real chance(void) {
-    seed = seed * 1664525u + 1013904223u;
-    return (hys_real)(int32_t)(seed >> 9) * (hys_real)1.1920929e-07;
-}
-
-static void take(hys_real x) {
-    uint8_t bytes[sizeof x], n;
-    memcpy(bytes, &x, sizeof x);
-    for (n = 0; n < sizeof x; n++)
-        hash = (hash ^ bytes[n]) * 16777619u;
-}
 
 static void start(void) {
     uint8_t n;

@@ -2,27 +2,15 @@
  * hash, what one sample of the learner took at most, what one inverse step took, and bytes of memory
  * for both. */
 #include MODEL_HEADER
+#include "bits.h"
 #include "port.h"
-#include <string.h>
 
 static hys_turn turns[2][TURNS];
 static hys_state wanted, plant;
 static hys_turn plant_turns[TURNS];
 static hys_adaptive adaptive;
 static hys_real memory[NUMBERS];
-static uint32_t hash = 2166136261u, seed = 1, most[2];
-
-static hys_real chance(void) {
-    seed = seed * 1664525u + 1013904223u;
-    return (hys_real)(int32_t)(seed >> 9) * (hys_real)1.1920929e-07;
-}
-
-static void take(hys_real x) {
-    uint8_t bytes[sizeof x], n;
-    memcpy(bytes, &x, sizeof x);
-    for (n = 0; n < sizeof x; n++)
-        hash = (hash ^ bytes[n]) * 16777619u;
-}
+static uint32_t most[2];
 
 #define TIMED(what, call) \
     do { \

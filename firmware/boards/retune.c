@@ -3,8 +3,8 @@
  * cost.c does, a hash of all drives; the mean square error of the last quarter, in 1e-9 of its unit;
  * and the most that one sample took. */
 #include MODEL_HEADER
+#include "bits.h"
 #include "port.h"
-#include <string.h>
 
 enum { COUNT = 8000 };
 static hys_turn turns[4][TURNS];
@@ -13,20 +13,8 @@ static hys_controller controller;
 static hys_real under_way[LATE + 1];
 static hys_adaptive adaptive;
 static hys_real memory[NUMBERS];
-static uint32_t hash = 2166136261u, seed = 1, most;
+static uint32_t most;
 static hys_real sum;
-
-static hys_real chance(void) {
-    seed = seed * 1664525u + 1013904223u;
-    return (hys_real)(int32_t)(seed >> 9) * (hys_real)1.1920929e-07;
-}
-
-static void take(hys_real x) {
-    uint8_t bytes[sizeof x], n;
-    memcpy(bytes, &x, sizeof x);
-    for (n = 0; n < sizeof x; n++)
-        hash = (hash ^ bytes[n]) * 16777619u;
-}
 
 /* One sample of the loop, as a program on a chip has it. The reading answers the last drive. */
 static void sample(hys_real reference, hys_real ahead, hys_real reading, hys_action *action) {

@@ -2,7 +2,7 @@
 
 use crate::model::Model;
 use crate::recording::Recording;
-use crate::series::frozen::frozen;
+use crate::series::frozen::{are_apart, frozen};
 use hysteron_core::{Channel, Outcome, Reading, Watch};
 use serde::{Serialize, Serializer};
 use std::ops::Range;
@@ -73,9 +73,7 @@ impl Stuck {
         }
         // An input that is frozen to the last digit is one at rest to a learner.
         for samples in frozen(&recording.input, &recording.output) {
-            let apart =
-                |one: &Self| one.samples.end <= samples.start || samples.end <= one.samples.start;
-            if found.iter().all(apart) {
+            if found.iter().all(|one| are_apart(&one.samples, &samples)) {
                 let channel = Channel::Input;
                 found.push(Self { channel, samples });
             }

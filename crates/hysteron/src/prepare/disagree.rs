@@ -8,7 +8,7 @@
 
 use super::explained::{explained, stands_still};
 use super::judge::{apart, from_kept, mean, unseen};
-use super::suspects::{Suspect, all_jumps, of_models, of_the_series};
+use super::suspects::{Suspect, all_jumps, of_models, of_the_series, with_that_of_the_error};
 use crate::recording::Recording;
 use crate::series::spread::usual_span;
 use std::ops::Range;
@@ -83,16 +83,17 @@ fn fewer(recording: &Recording) -> Vec<usize> {
 fn found(recording: &Recording) -> Option<Disagreement> {
     let all = from_kept(recording, &|_| true)?;
     let span = usual_span(&recording.output);
-    let cuts = all_jumps(recording);
+    let jumps = all_jumps(recording);
     // No part of the rows then errs by enough. The usual range of the others may be smaller; that
     // is so where the outputs of many rows are wrong, and then the series jump, or the errors are
     // large.
     let error = mean(apart(&recording.output, &all));
-    if cuts.is_empty() && error <= 0.5 * HALF * LEAST * span {
+    if jumps.is_empty() && error <= 0.5 * HALF * LEAST * span {
         return None;
     }
     let compared_with = |suspect| compared(recording, suspect, FACTOR, &all, from_kept);
-    let seen = of_the_series(recording, &cuts, &all).into_iter();
+    let cuts = with_that_of_the_error(&jumps, recording, &all);
+    let seen = of_the_series(recording, &jumps, &cuts).into_iter();
     let seen = seen.filter_map(compared_with);
     let concentrated = of_models(recording, &cuts, &all).into_iter();
     let concentrated = concentrated

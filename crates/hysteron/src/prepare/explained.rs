@@ -29,7 +29,9 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
         true => rows.start + block..rows.end - block,
         false => rows.clone(),
     };
-    if is_frozen(recording, &inner) {
+    let others = |recording: &Recording| from_kept(recording, &|n| !rows.contains(&n));
+    let model = others(recording);
+    if is_frozen(recording, model.as_deref(), &inner) {
         return true;
     }
     let output = &recording.output;
@@ -38,8 +40,7 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
         .map(|n| output[n])
         .collect();
     let of_others = usual_span(&kept).min(usual_span(output));
-    let off = |recording: &Recording, affine: bool| -> Option<f64> {
-        let model = from_kept(recording, &|n| !rows.contains(&n))?;
+    let off = |recording: &Recording, model: &[f64], affine: bool| -> Option<f64> {
         let (read, model) = (&recording.output[inner.clone()], &model[inner.clone()]);
         // Where nothing moves, a line explains anything.
         if usual_span(model) < MOVES * of_others {
@@ -59,9 +60,11 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
         ))
     };
     let exchanged = Reading::Exchanged.of(recording, std::slice::from_ref(rows));
-    let before = off(recording, false).unwrap_or(f64::INFINITY);
+    let as_read = |affine| off(recording, model.as_deref()?, affine);
+    let before = as_read(false).unwrap_or(f64::INFINITY);
     let enough = (EXPLAINED * without).min(LEFT * before);
-    let found = [off(recording, true), off(&exchanged, false)];
+    let of_exchanged = || off(&exchanged, &others(&exchanged)?, false);
+    let found = [as_read(true), of_exchanged()];
     found.into_iter().flatten().any(|off| off <= enough)
 }
 
@@ -78,12 +81,12 @@ pub(super) fn stands_still(recording: &Recording, rows: &Range<usize>, without: 
     let off = mean(apart(&recording.output[rows.clone()], &model[rows.clone()]));
     off >= SUSPECT * without
         && recording.input[rows.clone()].iter().all(known)
-        && is_frozen(recording, &rows)
+        && is_frozen(recording, Some(&model), &rows)
 }
 
-/// Whether one channel stands still in these rows while the other one turns, or while the output of a
-/// model of the others does. One way alone proves nothing: a wire without a drive cools.
-fn is_frozen(recording: &Recording, rows: &Range<usize>) -> bool {
+/// Whether one channel stands still in these rows while the other one turns, or while the output of
+/// the `model` of the others does. One way alone proves nothing: a wire without a drive cools.
+fn is_frozen(recording: &Recording, model: Option<&[f64]>, rows: &Range<usize>) -> bool {
     let (input, output) = (&recording.input, &recording.output);
     let is_still = |values: &[f64]| usual_span(&values[rows.clone()]) <= STILL * usual_span(values);
     let turns = |values: &[f64]| {
@@ -91,9 +94,7 @@ fn is_frozen(recording: &Recording, rows: &Range<usize>) -> bool {
         let span = usual_span(output);
         rise.max(fall) >= MOVES * span && rise.min(fall) >= TURNS * span
     };
-    let model = || from_kept(recording, &|n| !rows.contains(&n));
-    is_still(input) && turns(output)
-        || is_still(output) && model().is_some_and(|model| turns(&model))
+    is_still(input) && turns(output) || is_still(output) && model.is_some_and(turns)
 }
 
 /// The rising line from `x` to `y` with the least squares; `None` if it does not rise.

@@ -61,23 +61,31 @@ fn ascending(mut cuts: Vec<usize>) -> Vec<usize> {
     cuts
 }
 
-/// Those that the series tell, which jump before the samples `cuts`, with the error of a model that
-/// `predicted`.
+/// The `jumps` of the series, and the sample before which the error of a model jumps furthest: a small
+/// slip of a sensor, which the series alone do not show.
+pub(super) fn with_that_of_the_error(
+    jumps: &[usize],
+    recording: &Recording,
+    predicted: &[f64],
+) -> Vec<usize> {
+    let error = |n: usize| recording.output[n] - predicted[n];
+    let jump = |n: &usize| (error(*n) - error(n - 1)).abs();
+    let furthest = (1..recording.len()).max_by(|a, b| jump(a).total_cmp(&jump(b)));
+    ascending(jumps.iter().copied().chain(furthest).collect())
+}
+
+/// Those that the series tell, between their `jumps`, and between these `cuts` that may be more.
 pub(super) fn of_the_series(
     recording: &Recording,
+    jumps: &[usize],
     cuts: &[usize],
-    predicted: &[f64],
 ) -> Vec<Suspect> {
     let len = recording.len();
-    let mut found: Vec<Suspect> = between(cuts, len)
-        .into_iter()
-        .map(Suspect::unseen)
-        .collect();
-    let jump = jump_of_the_error(recording, predicted);
-    let cuts = ascending(cuts.iter().copied().chain(jump).collect());
-    let misread = readings(recording, &cuts).into_iter();
+    let parts = between(jumps, len).into_iter();
+    let mut found: Vec<Suspect> = parts.map(Suspect::unseen).collect();
+    let misread = readings(recording, cuts).into_iter();
     found.extend(misread.map(|(rows, way)| Suspect::seen(rows, Some(way))));
-    let parts = between(&cuts, len).into_iter();
+    let parts = between(cuts, len).into_iter();
     found.extend(parts.filter_map(|rows| slipped(recording, rows)));
     let channels = [&recording.input, &recording.output].into_iter();
     let runs = channels.flat_map(|values| still(values));
@@ -85,17 +93,16 @@ pub(super) fn of_the_series(
     found
 }
 
-/// Those that models tell, of which the first one, of all rows, `predicted`.
+/// Those that models tell, of which the first one, of all rows, `predicted`. Their ends are also moved
+/// to near `cuts`.
 pub(super) fn of_models(recording: &Recording, cuts: &[usize], predicted: &[f64]) -> Vec<Suspect> {
-    let jump = jump_of_the_error(recording, predicted);
-    let cuts = ascending(cuts.iter().copied().chain(jump).collect());
     let starts = [Some(predicted.to_vec()), without_a_window(recording)];
     let found = starts
         .into_iter()
         .flatten()
         .flat_map(|start| concentrated(recording, start));
     found
-        .flat_map(|rows| [snapped(&rows, &cuts, recording.len()), rows])
+        .flat_map(|rows| [snapped(&rows, cuts, recording.len()), rows])
         .map(|rows| Suspect::unseen(vec![rows]))
         .collect()
 }
@@ -136,14 +143,6 @@ fn snapped(rows: &Range<usize>, cuts: &[usize], len: usize) -> Range<usize> {
             .unwrap_or(end)
     };
     nearest(rows.start)..nearest(rows.end)
-}
-
-/// The sample before which the error of a model jumps furthest: a small slip of a sensor, which the
-/// series alone do not show.
-fn jump_of_the_error(recording: &Recording, model: &[f64]) -> Option<usize> {
-    let error = |n: usize| recording.output[n] - model[n];
-    let jump = |n: &usize| (error(*n) - error(n - 1)).abs();
-    (1..recording.len()).max_by(|a, b| jump(a).total_cmp(&jump(b)))
 }
 
 /// What a model of all rows but a window predicts, for the window without which it follows the

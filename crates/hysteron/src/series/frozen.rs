@@ -53,9 +53,7 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         false => far,
     };
     let apart = |run: &Range<usize>, found: &[Range<usize>]| {
-        found
-            .iter()
-            .all(|other| other.end <= run.start || run.end <= other.start)
+        found.iter().all(|other| are_apart(other, run))
     };
     for run in still(values) {
         let far = match inside(&run) {
@@ -76,6 +74,11 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         }
     }
     found
+}
+
+/// Whether two spans of samples have none in common.
+pub(crate) fn are_apart(one: &Range<usize>, other: &Range<usize>) -> bool {
+    one.end <= other.start || other.end <= one.start
 }
 
 /// Runs of samples that keep one value, exactly or but for noise, whatever the other series does.
