@@ -105,9 +105,17 @@ def test_the_path_in_a_message_is_the_path(tmp_path, name):
 def test_segments_are_recordings_of_one_experiment(tmp_path):
     path = tmp_path / "run.csv"
     rows = [(n, 50 - 30 * np.cos(0.05 * n)) for n in range(300)]
-    table = "".join(f"{t},{x},{0.2 * x}\n" for t, x in rows + rows[:200])
-    path.write_text("t,x,y\n" + table)
+    again = [(n, 45 - 25 * np.cos(0.05 * n)) for n in range(200)]
     columns = {"input": "x", "output": "y", "time": "t"}
+
+    def write(rows):
+        path.write_text("t,x,y\n" + "".join(f"{t},{x},{0.2 * x}\n" for t, x in rows))
+
+    write(rows + rows[:200])
+    with pytest.warns(pyhysteron.HysteronWarning, match="197 more standing there before: dropped"):
+        parts = pyhysteron.read_segments(path, **columns, repair=True)
+    assert [len(part) for part in parts] == [300]
+    write(rows + again)
     with pytest.raises(pyhysteron.RecordingError, match="line 302"):
         pyhysteron.read_segments(path, **columns)
     with pytest.warns(pyhysteron.HysteronWarning, match="line 302 going back in time"):
