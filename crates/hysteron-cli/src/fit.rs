@@ -79,7 +79,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         }
         (Some(fit), false) => {
             let held_out = held_out.map(|held_out| hold_out::to_text(&held_out, &model));
-            let lines = [Some(to_text(args, &model, fit)), held_out];
+            let lines = [Some(to_text(args, &model, fit, &recordings)), held_out];
             let lines = lines.into_iter().flatten().collect::<Vec<_>>().join("\n");
             print(&format!("{lines}\n\n{}", text::verdict(&verdict)))
         }

@@ -101,7 +101,9 @@ pub use prepare::{
     SensorLag, Smoothed, Spikes, Step, doubts, prepare, rate_dependence,
 };
 pub use progress::Progress;
-pub use recording::{HoldOut, Origin, Quantity, Recording, Source, Split, one_after_the_other};
+pub use recording::{
+    HoldOut, Origin, Quantity, Recording, Rows, Source, Split, one_after_the_other,
+};
 pub use remedy::{Remedy, Setting, SettingValue};
 pub use rivals::{Rival, RivalKind};
 pub use series::noise::noise;

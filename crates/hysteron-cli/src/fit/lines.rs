@@ -2,10 +2,15 @@
 
 use crate::args::Dynamics;
 use crate::{args, text};
-use hysteron::{Criterion, FirstOrder, FitSummary, Model, Smooth, Step, Validation};
+use hysteron::{Criterion, FirstOrder, FitSummary, Model, Recording, Smooth, Step, Validation};
 
 /// All lines.
-pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
+pub(super) fn to_text(
+    args: &args::Fit,
+    model: &Model,
+    fit: &FitSummary,
+    recordings: &[Recording],
+) -> String {
     let negative = model.weights().iter().filter(|mu| **mu < 0.0).count();
     let mut lines = vec![
         format!(
@@ -31,7 +36,7 @@ pub(super) fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> Stri
             .as_ref()
             .map(|found| choice_line(model, fit, found)),
     );
-    lines.extend(outliers_line(fit, model));
+    lines.extend(outliers_line(fit, model, recordings));
     let bare = model.latent() == 0.0;
     lines.extend(model.thermal.as_ref().map(|body| thermal_line(body, bare)));
     lines.extend(latent_line(model));
@@ -85,7 +90,7 @@ fn choice_line(model: &Model, fit: &FitSummary, found: &Validation) -> String {
 }
 
 /// Which readings were left out: the first few by recording and row, counted from 1.
-fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
+fn outliers_line(fit: &FitSummary, model: &Model, recordings: &[Recording]) -> Option<String> {
     const NAMED: usize = 5;
     let count = fit.outliers.len();
     let named = fit.outliers.iter().take(NAMED).map(|outlier| {
@@ -94,7 +99,11 @@ fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
             false => format!("recording {}, ", outlier.recording + 1),
         };
         let by = model.output.text(outlier.by);
-        format!("{recording}sample {} by {by}", outlier.sample + 1)
+        let place = recordings
+            .get(outlier.recording)
+            .and_then(|recording| recording.place(outlier.sample))
+            .map_or_else(String::new, |place| format!(" ({place})"));
+        format!("{recording}sample {}{place} by {by}", outlier.sample + 1)
     });
     let named = named.collect::<Vec<_>>().join("; ");
     let more = if count > NAMED { "; …" } else { "" };

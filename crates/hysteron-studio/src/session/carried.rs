@@ -157,7 +157,7 @@ impl CarriedRecording {
                 true => Origin::Simulated,
                 false => Origin::Measured,
             },
-            source: self.source.map(|(path, sha256)| Source { path, sha256 }),
+            source: self.source.map(|(path, sha256)| Source::new(path, sha256)),
             input: numbers(&self.input)?,
             output: numbers(&self.output)?,
         };

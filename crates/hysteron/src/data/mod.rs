@@ -2,7 +2,7 @@
 //!
 //! `table` reads CSV, Parquet, Arrow and MATLAB files. `recording` turns their columns into recordings.
 //! `output` writes tables. `cells` writes cells as CSV.
-//! `positions` keeps where rows are. `log` knows the tables that a loop wrote. `run` simulates and inverts tables, a block of rows at a time.
+//! `log` knows the tables that a loop wrote. `run` simulates and inverts tables, a block of rows at a time.
 //! `design`, `adapted` and `trace` read and write what their names say. `columns` summarises
 //! a table, `preview` shows it, and `roles` finds what its columns are.
 
@@ -12,7 +12,6 @@ mod columns;
 mod design;
 mod log;
 mod output;
-mod positions;
 mod preview;
 mod recording;
 mod roles;

@@ -8,7 +8,7 @@ use super::judge::Judge;
 use super::options::{PrepareOptions, Step};
 use super::single;
 use crate::error::{Error, Result};
-use crate::recording::{Recording, turned_in_gaps};
+use crate::recording::{Recording, Rows, turned_in_gaps};
 use crate::remedy::{Remedy, Setting};
 use crate::series::frozen::frozen;
 use crate::series::repeated::repeated;
@@ -27,29 +27,29 @@ pub enum Doubt {
     Frozen {
         /// Name of the series that stands still.
         series: String,
-        /// First and last row.
-        rows: (usize, usize),
+        /// The rows in which it does.
+        rows: Rows,
         /// Name of the series that moves.
         other: String,
     },
     /// Rows are the same as earlier ones, bit by bit.
     Repeated {
-        /// First and last row.
-        rows: (usize, usize),
-        /// First and last of the earlier rows, or of those that the first ones repeat.
-        of: (usize, usize),
+        /// The later rows.
+        rows: Rows,
+        /// The earlier rows, or those of them that the first ones repeat.
+        of: Rows,
     },
     /// Rows are missing between two, and the input turned meanwhile.
     Gap {
         /// Name of the input.
         series: String,
         /// The last row before the gap, and the first one after it.
-        rows: (usize, usize),
+        rows: Rows,
     },
     /// No model follows these rows together with the others.
     Disagree {
-        /// First and last row of each stretch.
-        rows: Vec<(usize, usize)>,
+        /// Each stretch of them.
+        rows: Vec<Rows>,
         /// The error on the other rows of a model that has seen these too: a mean distance, in
         /// percent of the usual range of the output.
         with: f64,
@@ -65,18 +65,15 @@ impl fmt::Display for Doubt {
         match self {
             Self::Frozen {
                 series,
-                rows: (first, last),
+                rows,
                 other,
             } => write!(
                 f,
-                "{series} stands still in rows {first} to {last} while {other} moves: a frozen \
+                "{series} stands still in rows {rows} while {other} moves: a frozen \
                  channel"
             ),
-            Self::Repeated {
-                rows: (first, last),
-                of: (earlier, until),
-            } => {
-                let all = last - first == until - earlier;
+            Self::Repeated { rows, of } => {
+                let all = rows.last - rows.first == of.last - of.first;
                 let begin = if all {
                     "are"
                 } else {
@@ -84,26 +81,20 @@ impl fmt::Display for Doubt {
                 };
                 write!(
                     f,
-                    "rows {first} to {last} {begin} rows {earlier} to {until} once more, to the \
+                    "rows {rows} {begin} rows {of} once more, to the \
                      last digit"
                 )
             }
-            Self::Gap {
-                series,
-                rows: (before, after),
-            } => write!(
-                f,
-                "between rows {before} and {after} is a gap in which {series} turned unseen"
-            ),
+            Self::Gap { series, rows } => {
+                write!(f, "in rows {rows} is a gap in which {series} turned unseen")
+            }
             Self::Disagree {
                 rows,
                 with,
                 without,
                 read,
             } => {
-                let rows = rows
-                    .iter()
-                    .map(|(first, last)| format!("{first} to {last}"));
+                let rows = rows.iter().map(Rows::to_string);
                 let (how, causes) = match read {
                     Some(way) => (way.as_str(), ""),
                     None => (
@@ -150,18 +141,16 @@ impl Doubt {
     pub fn rows(&self) -> Vec<(usize, usize)> {
         match self {
             Self::Frozen { rows, .. } | Self::Repeated { rows, .. } | Self::Gap { rows, .. } => {
-                vec![*rows]
+                vec![rows.ends()]
             }
-            Self::Disagree { rows, .. } => rows.clone(),
+            Self::Disagree { rows, .. } => rows.iter().map(|rows| rows.ends()).collect(),
         }
     }
 
     /// The same, of a recording that follows so many rows of others.
     #[must_use]
     pub(crate) fn after(mut self, before: usize) -> Self {
-        let move_on = |(first, last): &mut (usize, usize)| {
-            (*first, *last) = (*first + before, *last + before);
-        };
+        let move_on = |rows: &mut Rows| *rows = rows.after(before);
         match &mut self {
             Self::Frozen { rows, .. } | Self::Gap { rows, .. } => move_on(rows),
             Self::Repeated { rows, of } => [rows, of].into_iter().for_each(move_on),
@@ -224,7 +213,7 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
         &recording.input_quantity.name,
         &recording.output_quantity.name,
     );
-    let rows = |span: &Range<usize>| (span.start + 1, span.end);
+    let rows = |span: &Range<usize>| Rows::new(recording, span);
     let mut found = Vec::new();
     for (values, other, series, moving) in [(input, output, x, y), (output, input, y, x)] {
         found.extend(frozen(values, other).iter().map(|span| Doubt::Frozen {
@@ -241,7 +230,7 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
         let gaps = turned_in_gaps(time, input).into_iter();
         found.extend(gaps.map(|n| Doubt::Gap {
             series: x.clone(),
-            rows: (n, n + 1),
+            rows: rows(&(n - 1..n + 1)),
         }));
     }
     // Where rows are known to be wrong, all others would disagree with them.

@@ -2,10 +2,13 @@
 //!
 //! This file defines [`Recording`] and the [`Quantity`] of each series. `gaps` finds gaps in the
 //! time. `split` parts a recording into what is fitted and what is held out. `joined` puts several
-//! one after the other, to be shown. `units` knows what units measure.
+//! one after the other, to be shown. `positions` keeps where rows stand in a file, and `rows` names
+//! them. `units` knows what units measure.
 
 mod gaps;
 mod joined;
+mod positions;
+mod rows;
 mod split;
 mod units;
 
@@ -14,11 +17,15 @@ pub(crate) use gaps::long_gaps;
 pub(crate) use gaps::{GAP, gaps, turned_in_gaps};
 pub(crate) use joined::no_recordings;
 pub use joined::one_after_the_other;
+pub(crate) use positions::Positions;
+#[cfg(feature = "data")]
+pub(crate) use positions::RUN;
+pub use rows::Rows;
 pub(crate) use split::split_each;
 pub use split::{HoldOut, Split};
 pub(crate) use units::Measures;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::series::range;
 use std::path::PathBuf;
 
@@ -121,6 +128,20 @@ pub struct Source {
     pub path: PathBuf,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
+    /// Where its samples stand in it, unless they are all of its rows in their order.
+    pub(crate) places: Option<Positions>,
+}
+
+impl Source {
+    /// A file of which all rows are samples.
+    #[must_use]
+    pub fn new(path: PathBuf, sha256: String) -> Self {
+        Self {
+            path,
+            sha256,
+            places: None,
+        }
+    }
 }
 
 /// Largest absolute value that is accepted. A sum of squares of larger values could overflow.
@@ -189,6 +210,14 @@ impl Recording {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.input.is_empty()
+    }
+
+    /// Where in its file a sample stands, counted from 0. `None` where samples count as rows do: no
+    /// row was left out, and the file is one recording.
+    #[must_use]
+    pub fn place(&self, sample: usize) -> Option<Place> {
+        let places = self.source.as_ref()?.places.as_ref()?;
+        places.of_sample(sample, self.len())
     }
 
     /// Smallest and largest input, and smallest and largest output.

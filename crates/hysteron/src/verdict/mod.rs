@@ -14,7 +14,7 @@ pub use cause::Cause;
 pub use grade::{Basis, Grade};
 pub use parts::{ErrorPart, PartKind, error_parts};
 
-use crate::error::Result;
+use crate::error::{Place, Result};
 use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::Forward;
 use crate::hold_out::HeldOut;
@@ -32,6 +32,9 @@ pub struct Worst {
     pub recording: usize,
     /// Index of the sample in it, from 0.
     pub sample: usize,
+    /// Where it stands in the file, if rows count otherwise there.
+    #[serde(skip)]
+    pub place: Option<Place>,
     /// Its time in seconds; `None` without time.
     pub time: Option<f64>,
     /// The input there.
@@ -272,6 +275,7 @@ fn worst(recordings: &[Recording], modelled: &[f64]) -> Option<Worst> {
     Some(Worst {
         recording: number,
         sample,
+        place: recording.place(sample),
         time: recording.time.as_ref().map(|time| time[sample]),
         input: recording.input[sample],
         measured: recording.output[sample],

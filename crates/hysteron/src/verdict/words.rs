@@ -163,9 +163,11 @@ impl Verdict {
         let time = worst
             .time
             .map(|time| format!(" at {} s", (time * 1e6).round() / 1e6));
+        let place = worst.place.map(|place| format!(" ({place})"));
         Some(format!(
-            "{recording}sample {}{}: {} {}, {} {} measured, {} modelled",
+            "{recording}sample {}{}{}: {} {}, {} {} measured, {} modelled",
             worst.sample + 1,
+            place.unwrap_or_default(),
             time.unwrap_or_default(),
             self.input.name,
             self.input.text(worst.input),

@@ -14,10 +14,7 @@ fn recording(phase: f64, digest: &str) -> Recording {
     });
     let output = output.collect();
     Recording {
-        source: Some(Source {
-            path: format!("{digest}.csv").into(),
-            sha256: digest.into(),
-        }),
+        source: Some(Source::new(format!("{digest}.csv").into(), digest.into())),
         ..Recording::new(input, output).unwrap()
     }
 }

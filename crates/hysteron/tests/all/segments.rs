@@ -1,8 +1,9 @@
 //! The segments of a table are several recordings of one experiment, for everything that reads one.
 
 use hysteron::{
-    AdaptOptions, Columns, Errors, Fit, Learner, Model, Operator, Plane, Progress, Recording,
-    Repair, Sign, Start, adapt, evaluate_errors, evaluate_from, forward, inspect_recording,
+    AdaptOptions, Columns, Errors, Fit, Learner, Model, Operator, Place, Plane, Progress,
+    Recording, Repair, Sign, Start, adapt, evaluate_errors, evaluate_from, forward,
+    inspect_recording,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -186,4 +187,41 @@ fn no_recording_is_an_error() {
     assert!(inspect_recording(none, *model.plane()).is_err());
     assert!(adapt(&model, none, &AdaptOptions::default(), Progress::NONE).is_err());
     assert!(hysteron::plane_of(none, 5).is_err());
+}
+
+/// Whatever was left out before a sample, and in whichever recording it is, its place is its line. A
+/// table that is one whole recording needs none.
+#[test]
+fn the_place_of_a_sample_is_its_line_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(23);
+    for round in 0..30 {
+        let (count, dirty) = (rng.random_range(1..4), rng.random_range(0..3));
+        let (_, recordings) = experiment(&mut rng, count);
+        let mut rows: Vec<String> = table(&recordings).lines().map(str::to_owned).collect();
+        for _ in 0..dirty {
+            let row = rng.random_range(2..rows.len() - 2);
+            rows[row] = format!("{},,1", rows[row].split(',').next().unwrap());
+        }
+        let path = folder.path().join(format!("{round}.csv"));
+        std::fs::write(&path, rows.join("\n")).unwrap();
+        let columns = Columns {
+            time: Some("t"),
+            ..Columns::new("x", "y")
+        };
+        let (segments, _) = Recording::read_segments(&path, columns, Repair::Mend).unwrap();
+        for segment in &segments {
+            let recording = &segment.recording;
+            let time = recording.time.as_ref().unwrap();
+            for (sample, x) in recording.input.iter().enumerate() {
+                let Some(Place::Line(line)) = recording.place(sample) else {
+                    assert_eq!((count, dirty), (1, 0), "round {round}, sample {sample}");
+                    continue;
+                };
+                let row = &rows[line as usize - 1];
+                assert!(row.starts_with(&format!("{},{x},", time[sample])), "{row}");
+            }
+            assert_eq!(recording.place(recording.len()), None);
+        }
+    }
 }

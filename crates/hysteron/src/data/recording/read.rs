@@ -270,7 +270,8 @@ fn read_parts(
         .map(|(kind, places)| Note::Rows { kind, places });
     let notes = remarks.chain(of_rows).collect();
     let others = samples.others.take();
-    let source = table.sha256()?.map(|sha256| Source { path, sha256 });
+    let source = table.sha256()?.map(|sha256| Source::new(path, sha256));
+    let plain = samples.places.are_one_run() && starts.is_empty();
     let ends = starts.iter().skip(1).copied().chain([samples.places.len()]);
     let mut begin = 0;
     let mut segments = Vec::new();
@@ -292,7 +293,10 @@ fn read_parts(
             output_quantity: output_quantity.clone(),
             load_quantity: load_quantity.clone(),
             origin: Origin::Measured,
-            source: source.clone(),
+            source: source.clone().map(|source| Source {
+                places: (!plain).then(|| samples.places.part(begin..end)),
+                ..source
+            }),
         };
         recording.check()?;
         segments.push(Segment {

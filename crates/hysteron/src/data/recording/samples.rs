@@ -1,7 +1,6 @@
 //! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
 use crate::data::log::HeldBack;
-use crate::data::positions::{Positions, RUN};
 use crate::data::recording::columns::TIME;
 use crate::data::recording::history::{History, starts};
 use crate::data::recording::others::Others;
@@ -9,6 +8,7 @@ use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
 use crate::error::{Error, Place, Result};
 use crate::recording::gaps;
+use crate::recording::{Positions, RUN};
 use crate::remedy::{Remedy, Setting};
 
 /// Input, output, time and load.

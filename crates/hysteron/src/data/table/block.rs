@@ -3,8 +3,8 @@
 use super::time::Time;
 use super::{Column, Source, TableReader};
 use crate::data::cells;
-use crate::data::positions::Positions;
 use crate::error::{Place, Result};
+use crate::recording::Positions;
 use std::ops::Range;
 
 /// What a writer needs of the rows of its source.

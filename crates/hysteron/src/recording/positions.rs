@@ -3,7 +3,7 @@
 use crate::error::Place;
 
 /// The positions of rows, in the order of the rows.
-#[derive(Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Positions {
     /// The number of the first row of each run, and its position.
     runs: Vec<(usize, Place)>,
@@ -11,8 +11,10 @@ pub(crate) struct Positions {
 }
 
 /// Bytes of a run.
+#[cfg(feature = "data")]
 pub(crate) const RUN: usize = size_of::<(usize, Place)>();
 
+#[cfg(feature = "data")]
 impl Positions {
     pub(crate) fn len(&self) -> usize {
         self.len
@@ -50,10 +52,14 @@ impl Positions {
         self.len = self.len.min(len);
     }
 
-    /// The position of a row that was added.
-    pub(crate) fn at(&self, row: usize) -> Place {
-        let run = self.runs.partition_point(|(first, _)| *first <= row) - 1;
-        place_in(self.runs[run], row)
+    /// Whether each row follows the one before it in the file.
+    pub(crate) fn are_one_run(&self) -> bool {
+        self.runs.len() < 2
+    }
+
+    /// The positions of rows that follow one another here.
+    pub(crate) fn part(&self, rows: std::ops::Range<usize>) -> Self {
+        rows.map(|row| self.at(row)).collect()
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = Place> {
@@ -61,6 +67,20 @@ impl Positions {
     }
 }
 
+impl Positions {
+    /// The position of a row that was added.
+    pub(crate) fn at(&self, row: usize) -> Place {
+        let run = self.runs.partition_point(|(first, _)| *first <= row) - 1;
+        place_in(self.runs[run], row)
+    }
+
+    /// The position of a sample, if there are so many samples as rows.
+    pub(super) fn of_sample(&self, sample: usize, samples: usize) -> Option<Place> {
+        (self.len == samples && sample < samples).then(|| self.at(sample))
+    }
+}
+
+#[cfg(feature = "data")]
 impl FromIterator<Place> for Positions {
     fn from_iter<I: IntoIterator<Item = Place>>(places: I) -> Self {
         let mut all = Self::default();
@@ -78,7 +98,7 @@ fn place_in((first, place): (usize, Place), row: usize) -> Place {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "data"))]
 mod tests {
     use super::*;
     use rand_chacha::ChaCha8Rng;
