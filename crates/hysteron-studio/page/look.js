@@ -123,7 +123,7 @@ async function redraw() {
   if (mine !== now.asked) return;
   if (before !== now.beyond.size > 0) tools();
   play.show(now.overview, now.drawn, now.file, now.window ?? now.span ?? [0, 1], now.samples);
-  if (mine === now.asked && now.drawn.size > 0) await plane.show(now.overview, now.drawn);
+  if (mine === now.asked && now.drawn.size > 0) await plane.show(now.overview, now.drawn, now.file);
 }
 
 /** The ends with some room; null for all that there is. @param {import("./api.js").Ends | null} ends @returns {[number, number] | null} */

@@ -2,13 +2,13 @@
 
 import { ask } from "./api.js";
 import { by, el, fill, shown, unit } from "./dom.js";
-import { draw, plain, roundest, rounds } from "./plot.js";
+import { draw, on, plain, roundest, rounds } from "./plot.js";
 
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
 export const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
 
-/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null}} */
-const now = { kind: "weights", fit: null, chosen: false, at: null };
+/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null, file: number|null}} */
+const now = { kind: "weights", fit: null, chosen: false, at: null, file: null };
 
 /** Shows the states of the operators from now on. */
 export const states = () => (now.kind = "states");
@@ -24,6 +24,22 @@ export function at(file, time, overview, drawn) {
   if (file === null || drawn.size === 0) return;
   now.at = [file, time];
   return show(overview, drawn);
+}
+
+/** Told which sample a click in the plane chose. @type {(time: number) => void} */
+let chosen = () => {};
+
+/** @param {(time: number) => void} tell */
+export const onChoice = (tell) => (chosen = tell);
+
+/** Goes to the next sample at which the operator of a cell switches. @param {number} alpha @param {number} beta */
+async function follow(alpha, beta) {
+  if (now.file === null || now.fit === null) return;
+  const here = now.at?.[0] === now.file ? now.at[1] : null;
+  const sample = await ask("switch", { fit: now.fit, file: now.file, operator: [alpha + 1, beta + 1], after: here }).catch(() => null);
+  if (!sample) return;
+  now.kind = "states";
+  chosen(sample.time);
 }
 
 /** The place of an input between the levels of a plane. @param {number[]} levels @param {number} value */
@@ -72,8 +88,10 @@ export function classes(node, levels, values, unit) {
 /**
  * @param {any} overview
  * @param {Set<number>} drawn
+ * @param {number|null} file that is shown
  */
-export async function show(overview, drawn) {
+export async function show(overview, drawn, file = now.file) {
+  now.file = file;
   const ids = [...drawn];
   if (now.fit === null || !drawn.has(now.fit) || !now.chosen) {
     now.fit = drawn.has(overview.best) ? overview.best : ids[ids.length - 1];
@@ -104,7 +122,11 @@ export async function show(overview, drawn) {
     hovertemplate: `α %{customdata[0]}, β %{customdata[1]}${plain(unit(seen.unit))}: %{z:.4g}<extra></extra>`,
     colorbar: isClass ? bar(by("plot-plane").clientWidth < 480) : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
   }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: axis, yaxis: { ...axis }, dragmode: false });
+  on(by("plot-plane"), "plotly_click", (event) => {
+    const { x, y, z } = event.points[0];
+    if (z !== null) follow(Number(x), Number(y));
+  });
   by("plane-text").textContent = seen.sample
-    ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off.`
-    : "One cell for each operator, which switches on at β and off at α. Click a sample for its staircase.";
+    ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
+    : "One cell for each operator, which switches on at β and off at α. Click a cell for the sample at which it switches, or a sample for its staircase.";
 }

@@ -108,3 +108,5 @@ addEventListener("keydown", (event) => {
   else return;
   event.preventDefault();
 });
+
+plane.onChoice(to);

@@ -143,6 +143,12 @@ impl Session {
                 let at = at.into();
                 return Ok(Response::Sample(self.nearest(&view, at)?).into());
             }
+            Request::Switch {
+                fit,
+                file,
+                operator,
+                after,
+            } => return Ok(Response::Sample(self.switch(fit, file, operator, after)?).into()),
             Request::Worst { fit } => return Ok(Response::Worst(self.worst(fit)?).into()),
             Request::Drive { fit } => {
                 let drive = Drive::new(self.fitted(fit)?)?;

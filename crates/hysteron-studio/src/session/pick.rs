@@ -2,12 +2,12 @@
 
 use super::fault::Fault;
 use super::id::Id;
-use super::plane::SampleView;
+use super::plane::{SampleView, nearest};
 use super::seen::Seen;
 use super::state::Session;
 use super::thinned::when;
 use super::view::{Picture, View};
-use hysteron::Recording;
+use hysteron::{Recording, Sample, Surroundings};
 use hysteron_report::decimate::Point;
 use serde::Serialize;
 
@@ -83,6 +83,55 @@ impl Session {
             }
         }
         self.sample_at(view.file, &view.fits, found.1)
+    }
+
+    /// The first sample after a time at which an operator switches, or the first of all: it is half
+    /// way from off to on there, or back.
+    pub(super) fn switch(
+        &mut self,
+        fit: Id,
+        file: Id,
+        (off, on): (usize, usize),
+        after: Option<f64>,
+    ) -> Result<SampleView, Fault> {
+        let model = self.fitted(fit)?.model.clone();
+        let parts = self.file(file)?.parts()?.clone();
+        let shown = &parts.shown;
+        let after = after.map(|time| nearest(shown, time));
+        let (mut begin, mut first) = (0, None);
+        for recording in parts.all() {
+            let around = Surroundings {
+                time: recording.time.as_deref().filter(|_| model.reads_time()),
+                load: recording.load.as_deref().filter(|_| model.load.is_some()),
+            };
+            let acting = model.acting(&recording.input, around)?;
+            let mut state = model.start();
+            let mut was = None;
+            for (n, input) in acting.iter().enumerate() {
+                let sample = Sample {
+                    input: *input,
+                    dt: around.time.map(|time| time[n] - time[n.saturating_sub(1)]),
+                    load: around.load.map(|load| load[n]),
+                };
+                model.step(&mut state, sample)?;
+                let is = model.operator_state(&state, off, on)? >= 0.5;
+                if was.replace(is).is_some_and(|was| was != is) {
+                    let found = begin + n;
+                    if after.is_none_or(|after| found > after) {
+                        return self.sample_at(file, &[fit], found);
+                    }
+                    first.get_or_insert(found);
+                }
+            }
+            begin += recording.len();
+        }
+        let never = || {
+            Fault::missing(
+                "this operator does not switch in this file",
+                "choose a cell that the staircase passes",
+            )
+        };
+        self.sample_at(file, &[fit], first.ok_or_else(never)?)
     }
 
     /// The sample with the largest residual of a fit, in the files that it was fitted to and tested

@@ -200,7 +200,7 @@ pub(super) fn cells(count: usize, values: impl Iterator<Item = f64>) -> Vec<Vec<
 }
 
 /// The sample nearest to a time; NaN is the first.
-fn nearest(recording: &Recording, time: f64) -> usize {
+pub(super) fn nearest(recording: &Recording, time: f64) -> usize {
     let last = recording.len() - 1;
     match &recording.time {
         Some(times) => {

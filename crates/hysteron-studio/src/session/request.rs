@@ -124,6 +124,18 @@ pub enum Request {
         /// The point, in the units of the axes.
         at: (f64, f64),
     },
+    /// The next sample of a file at which an operator of a fit switches; after the last one, the first.
+    Switch {
+        /// The fit.
+        fit: Id,
+        /// The file.
+        file: Id,
+        /// The levels at which the operator switches off and on, counted from 1.
+        operator: (usize, usize),
+        /// The time (without one the number) of the sample after which it is sought.
+        #[serde(default)]
+        after: Option<f64>,
+    },
     /// The sample with the largest residual of a fit.
     Worst {
         /// The fit.
@@ -153,6 +165,7 @@ impl Request {
                 | Self::Plane { .. }
                 | Self::Sample { .. }
                 | Self::Nearest { .. }
+                | Self::Switch { .. }
                 | Self::Worst { .. }
                 | Self::Design(_)
                 | Self::Pull(_)

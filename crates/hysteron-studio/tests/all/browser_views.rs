@@ -101,6 +101,16 @@ fn every_view_answers_the_hand(way: Way) {
         &tab,
         "document.querySelector('#plot-plane').data.length === 3",
     );
+    // A click on a cell of the plane goes to a sample at which its operator switches.
+    let before = browser.value(&tab, row);
+    let [cell, _] = browser.points(&tab, "#plot-plane .nsewdrag", &[(0.2, 0.6), (0.2, 0.6)])[..]
+    else {
+        panic!("no plane");
+    };
+    browser.point(&tab, cell);
+    browser.wait(&tab, "document.querySelector('#plot-plane .hovertext')");
+    browser.drag(&tab, &[cell]);
+    browser.wait(&tab, &format!("{row} !== {before}"));
     for place in ["output", "input", "residuals", "loop"] {
         let mark = format!(
             "document.querySelector('#plot-{place}').layout.shapes.some(s => s.name === 'now')"

@@ -369,6 +369,8 @@ fn request() -> impl Strategy<Value = Value> {
                 "pixels": pixels})),
         1 => (id(), kind, id(), number()).prop_map(|(fit, kind, file, at)| json!({"request": "plane",
             "fit": fit, "kind": kind, "at": [file, at]})),
+        1 => (id(), id(), 0..20usize, 0..20usize, number()).prop_map(|(fit, file, i, j, at)| json!({
+            "request": "switch", "fit": fit, "file": file, "operator": [i, j], "after": at})),
         2 => id().prop_map(|fit| json!({"request": "drive", "fit": fit})),
         4 => (id(), number(), any::<bool>(), any::<bool>()).prop_map(|(drive, to, out, hold)| {
             let mut pull = json!({"request": "pull", "drive": drive,

@@ -93,6 +93,43 @@ fn a_part_of_the_loop_is_the_same_samples_in_every_picture() {
     assert_eq!(seen.unwrap()["files"][0]["samples"], rows.len());
 }
 
+/// A click in the plane goes from one switch of the operator to the next: its state there is on the
+/// other side of one half than at the sample before.
+#[test]
+fn a_cell_leads_to_the_samples_at_which_it_switches() {
+    let (mut session, file, fit) = fitted(0.0);
+    let mut ask = |request| ask(&mut session, request);
+    let seen = ask(json!({"request": "plane", "fit": fit, "kind": "weights"})).unwrap();
+    let count = seen["levels"].as_array().unwrap().len();
+    let mut walked = 0;
+    for (i, j) in [(1, 1), (1, count), (2, count / 2), (count, count)] {
+        let mut after = serde_json::Value::Null;
+        for _ in 0..4 {
+            let switch = json!({"request": "switch", "fit": fit, "file": file, "operator": [i, j],
+                "after": after});
+            let Ok(found) = ask(switch) else { break };
+            let row = found["row"].as_u64().unwrap();
+            let mut is_on = |row: u64| {
+                let time = found["time"].as_f64().unwrap()
+                    - 0.1 * (found["row"].as_f64().unwrap() - row as f64);
+                let at =
+                    json!({"request": "plane", "fit": fit, "kind": "states", "at": [file, time]});
+                let seen = ask(at).unwrap();
+                assert_eq!(seen["sample"]["row"], row);
+                seen["values"][j - 1][i - 1].as_f64().unwrap() >= 0.5
+            };
+            assert_ne!(is_on(row - 1), is_on(row), "operator {i}, {j} at row {row}");
+            after = found["time"].clone();
+            walked += 1;
+        }
+    }
+    assert!(walked >= 8, "{walked}");
+    for operator in [[0, 1], [2, 1], [1, count + 1]] {
+        let switch = json!({"request": "switch", "fit": fit, "file": file, "operator": operator});
+        assert!(ask(switch).is_err(), "{operator:?}");
+    }
+}
+
 #[test]
 fn a_play_through_the_time_shows_what_a_jump_shows() {
     let (mut session, file, fit) = fitted(0.0);

@@ -91,6 +91,15 @@ impl Model {
         state.step(self, sample.into())
     }
 
+    /// The state `γ_ij` in `[0, 1]` of the operator that switches off at level `i` and on at level
+    /// `j`, counted from 1.
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] unless `1 <= i <= j <= K`, and for a state of another model.
+    pub fn operator_state(&self, state: &State, i: usize, j: usize) -> Result<f64> {
+        Ok(state.operators.gamma(i, j)?)
+    }
+
     /// The operators' states `γ_ij` in `[0, 1]`, in the order of the weights.
     ///
     /// # Errors
