@@ -76,12 +76,16 @@ class Drawn {
     svg.after(this.node);
     frame.classList.add("live");
     this.seen = false;
+    /** The sample that is marked here. @type {Pointed | null} */
+    this.marked = null;
     /** @type {object[]} */
     this.shapes = [];
     new IntersectionObserver(
       (entries) => {
         this.seen = entries[entries.length - 1].isIntersecting;
-        if (this.seen && this.stale) this.draw();
+        if (!this.seen) return;
+        if (this.stale) this.draw();
+        else if (this.marked !== pointed) this.remark();
       },
       { rootMargin: "300px" },
     ).observe(this.node);
@@ -125,6 +129,7 @@ class Drawn {
 
   /** Marks of the sample that is pointed at. */
   marks() {
+    this.marked = pointed;
     if (!pointed || !isRecording(pointed.samples)) return [];
     const { sample, samples } = pointed;
     const lines = this.figure.plots.flatMap(({ lines }, n) => lines.map((line) => ({ line, n })));

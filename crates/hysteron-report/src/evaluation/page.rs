@@ -15,11 +15,14 @@ use maud::{Markup, html};
 
 impl Subject for View<'_> {
     fn sections() -> Vec<Section<Self>> {
-        let first = vec![loops::figure(), output_time::figure(), input_time::figure()];
+        let first = vec![
+            vec![loops::figure(), residuals::over_input()],
+            vec![output_time::figure()],
+            vec![input_time::figure()],
+        ];
         let forward = vec![
-            vec![load_measured::figure()],
             vec![discrepancy::output()],
-            vec![residuals::over_input(), residuals::histogram()],
+            vec![residuals::histogram(), load_measured::figure()],
         ];
         let inverse = vec![discrepancy::input(), close_up::figure()];
         let confidence = vec![
@@ -34,7 +37,7 @@ impl Subject for View<'_> {
         vec![
             Section {
                 notes: |view| [html! {}, errors(view)],
-                ..Section::column("Measured and modelled", first)
+                ..Section::new("Measured and modelled", first)
             },
             Section::new("Errors of the output", forward),
             Section {
