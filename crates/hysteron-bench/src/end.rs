@@ -75,6 +75,12 @@ impl fmt::Display for End {
             Self::Limit(output) => {
                 write!(f, "the output was {output}, beyond limits.output")
             }
+            Self::Device(why) if why == "limit" => {
+                write!(
+                    f,
+                    "the device ended, and said `limit`: a limit of its own was reached"
+                )
+            }
             Self::Device(why) => write!(f, "the device ended, and said `{why}`"),
             Self::Closed(how) => write!(f, "the line to the device is gone: {how}"),
             Self::Log(why) => write!(f, "the log cannot be written: {why}"),

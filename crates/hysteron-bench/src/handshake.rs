@@ -16,6 +16,7 @@ const LOOK: Duration = Duration::from_millis(20);
 pub(crate) fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Header, Option<String>> {
     let start = Instant::now();
     let mut asked = None;
+    let mut came = 0;
     while start.elapsed() < ANSWER {
         if stop.is_set() {
             return Err(None);
@@ -28,6 +29,7 @@ pub(crate) fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Heade
         match line.receive(Instant::now() + LOOK) {
             // A board that was running says other things first.
             Received::Line(bytes, _) => {
+                came += bytes.len();
                 if let Some(FromDevice::Header(header)) = opened(&bytes).and_then(FromDevice::parse)
                 {
                     return header.map_err(Some);
@@ -37,8 +39,16 @@ pub(crate) fn ask(line: &mut dyn Line, stop: &Stop) -> std::result::Result<Heade
             Received::Closed => return Err(Some("it ended before it said who it is".into())),
         }
     }
+    let heard = match came {
+        0 => "nothing came from it: is this its port, and does it run a program of this protocol?"
+            .to_owned(),
+        _ => format!(
+            "{came} bytes came, none of them its first line: is the baud rate that of the device, and \
+             does it run a program of this protocol?"
+        ),
+    };
     Err(Some(format!(
-        "it did not say who it is within {} s",
+        "it did not say who it is within {} s; {heard}",
         ANSWER.as_secs()
     )))
 }

@@ -115,7 +115,8 @@ fn c(args: &args::ExportC) -> Result<()> {
 fn arduino(args: &args::ExportArduino) -> Result<()> {
     let model = model(&args.model, args.load)?;
     // The sketches have the share of time for which current flows as the drive.
-    let drives = args.drive_range.unwrap_or((0.0, 1.0));
+    let (low, high) = model.drive.unwrap_or((0.0, 1.0));
+    let drives = args.drive_range.unwrap_or((low.max(0.0), high.min(1.0)));
     let control = control(&model, args.dt, drives, args.gains)?;
     let options = ArduinoOptions {
         name: args.name.as_deref(),
@@ -134,6 +135,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
             "name": export.name,
             "levels": export.levels,
             "stages": export.stages,
+            "standalone": made.standalone,
             "board": options.board.name(),
             "model_bytes": { "flash": memory.model_flash, "ram": memory.model_ram },
             "sketch_bytes": { "flash": memory.flash, "ram": memory.ram },
@@ -157,6 +159,12 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
         memory.ram,
         of(options.board.ram()),
     ));
+    if !made.standalone {
+        lines.push(
+            "no sketch `standalone`: its drive is a share of full power, and this one leaves 0 to 1"
+                .into(),
+        );
+    }
     if !memory.follows {
         lines.push(
             "there is no room for a second state: a reading that stands still is believed".into(),

@@ -53,6 +53,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let (model, held_out) = identify(args, &recordings, repeats, what.as_ref())?;
     file.commit_with(model.to_json().as_bytes())?;
 
+    prepare::after_fit(&model, reports.iter().map(|(_, rate)| rate.as_ref()));
     let mut clipped = 0;
     let mut advice = hysteron::advice(&model, &recordings)?;
     advice.extend(held_out.iter().flat_map(HeldOut::advice));

@@ -3,8 +3,8 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, Judged, LowPass, Preparation, PrepareOptions, Progress, Quantity, RateDependence,
-    Recording, Repairs, SensorLag, Smoothed, Step, TableWriter,
+    Columns, Judged, LowPass, Model, Preparation, PrepareOptions, Progress, Quantity,
+    RateDependence, Recording, Repairs, SensorLag, Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
@@ -93,10 +93,22 @@ pub(crate) fn before_fit(
         }
     }
     let rate = hysteron::rate_dependence(&recording)?;
-    if let Some(rate) = rate.as_ref().filter(|rate| rate.is_material()) {
-        say(format_args!("{which}{}", rate_line(rate)));
-    }
     Ok((recording, report, rate))
+}
+
+/// Says how the loops of recordings depend on rate, if their model does not follow that.
+pub(crate) fn after_fit<'a>(
+    model: &Model,
+    rates: impl ExactSizeIterator<Item = Option<&'a RateDependence>>,
+) {
+    let count = rates.len();
+    for (n, rate) in rates.enumerate() {
+        let missed = rate.filter(|rate| rate.is_material() && !model.is_timed());
+        if let Some(rate) = missed {
+            let which = crate::recording::which(n, count);
+            say(format_args!("{which}{}", rate_line(rate)));
+        }
+    }
 }
 
 /// The steps that were asked for before a fit.

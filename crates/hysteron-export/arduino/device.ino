@@ -114,10 +114,10 @@ void listen() {
 
 // ---- A sample ----
 void sample() {
-  unsigned int sum = 0;
-  for (uint8_t n = 0; n < 16; n++) sum += analogRead(SENSOR); // the mean has less noise
-  const bool there = sum > 16 * 2; // with a resistor to ground, a loose slider reads zero
-  const float mm = sum / 16.0 * MM_PER_COUNT;
+  unsigned int sum = 0, count;
+  bool there = true; // with a resistor to ground, a loose slider reads zero
+  for (uint8_t n = 0; n < 16; n++) sum += count = analogRead(SENSOR), there &= count > 2;
+  const float mm = sum / 16.0 * MM_PER_COUNT; // the mean has less noise
   heat += (drive - heat) * (DT_MS / 1000.0) / HEAT_S;
   line.print("S "), line.print(++number);
   line.print(' '), line.print((millis() - begun) / 1000.0, 3);

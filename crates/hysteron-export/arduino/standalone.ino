@@ -7,6 +7,7 @@
 #if defined(__AVR__)
 #include <avr/wdt.h>
 #endif
+@board@
 
 // ---- Your parts: as in the sketch `device`, which the model was recorded with ----
 const uint8_t SENSOR = A0, KNOB = A1, GATE = 9;
@@ -29,15 +30,16 @@ bool is_off = false;
 float at = NAN, speed; // the knob, and how far it goes in a sample
 
 void apply(float wanted) {
-  drive = constrain(wanted, 0, 1);
+  drive = constrain(wanted, 0, 1); // the controller's own range is that of --drive-range
   analogWrite(GATE, (int)(drive * 255 + 0.5));
 }
 
 /* A position, or NaN where nothing is connected: with a resistor to ground that reads zero. */
 float read(uint8_t pin) {
-  unsigned int sum = 0;
-  for (uint8_t n = 0; n < 16; n++) sum += analogRead(pin); // the mean has less noise
-  return sum > 16 * 2 ? sum / 16.0 * MM_PER_COUNT : NAN;
+  unsigned int sum = 0, count;
+  bool there = true;
+  for (uint8_t n = 0; n < 16; n++) sum += count = analogRead(pin), there &= count > 2;
+  return there ? sum / 16.0 * MM_PER_COUNT : NAN; // the mean has less noise
 }
 
 /* Follows the knob without its noise, which the inverse would answer with large drives. */

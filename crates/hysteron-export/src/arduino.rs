@@ -30,11 +30,14 @@ pub struct Arduino {
     pub export: CExport,
     /// What the sketch `standalone` needs on an AVR.
     pub memory: BoardMemory,
+    /// Whether that sketch was written. It drives with a share of full power, so the drives of the
+    /// loop have to lie between 0 and 1.
+    pub standalone: bool,
 }
 
 /// Writes a library into the folder `target`: the C of [`crate::c_controlled`] in `float`, a sketch
 /// by which `hysteron run` drives the board (`device`), and one that controls on the board alone
-/// (`standalone`). On an AVR the tables of the model stay in flash.
+/// (`standalone`, see [`Arduino::standalone`]). On an AVR the tables of the model stay in flash.
 ///
 /// What fits the board's memory is decided by arithmetic, before anything is written. Where the
 /// model does not fit twice, the sketch does without the state that follows the drive. With
@@ -94,7 +97,10 @@ pub fn arduino<'a>(
             }
         }
     })?;
-    let own = texts::files(model, &export, memory.follows);
+    let standalone = 0.0 <= scheme.drives.0 && scheme.drives.1 <= 1.0;
+    let written =
+        standalone.then(|| texts::standalone(model, &export, memory.follows, options.board));
+    let own = texts::files(&export, written);
     let names = export.files.iter().map(|file| Path::new("src").join(file));
     let all = names.zip(sources).chain(own);
     let mut folder = AtomicFolder::create(target, None)?;
@@ -107,5 +113,9 @@ pub fn arduino<'a>(
     }
     folder.commit()?;
     export.files = files.into_iter().collect::<Vec<PathBuf>>();
-    Ok(Arduino { export, memory })
+    Ok(Arduino {
+        export,
+        memory,
+        standalone,
+    })
 }

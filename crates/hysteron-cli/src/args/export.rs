@@ -115,7 +115,8 @@ pub(crate) struct ExportArduino {
     /// simulation]
     #[arg(long, value_name = "GAIN,S,S", value_parser = parse_gains, allow_hyphen_values = true)]
     pub(crate) gains: Option<Gains>,
-    /// Lowest and highest drive [default: those that the model was fitted with]
+    /// Lowest and highest drive [default: for a thermal body those that it was fitted with, up to 0
+    /// and 1; otherwise 0 and 1]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true)]
     pub(crate) drive_range: Option<(f64, f64)>,
     /// Take the model at this load

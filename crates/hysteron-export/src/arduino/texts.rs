@@ -1,11 +1,19 @@
 //! The files of a library that are not C.
 
+use super::Board;
 use crate::c::CExport;
 use hysteron::Model;
 use std::path::PathBuf;
 
 const DEVICE: &str = include_str!("../../arduino/device.ino");
 const STANDALONE: &str = include_str!("../../arduino/standalone.ino");
+
+/// The linker of a smaller board would say that a section does not fit.
+const MEGA: &str = "\
+#if defined(RAMEND) && RAMEND < 0x21FF
+#error this sketch is for a Mega: export the model with --board uno
+#endif
+";
 
 /// The parts of a sketch that learns.
 const LEARNER_STATES: &str = "\
@@ -65,7 +73,7 @@ const LITERALS: [&str; 6] = [
 ];
 
 /// Names and texts.
-pub(super) fn files(model: &Model, export: &CExport, follows: bool) -> Vec<(PathBuf, String)> {
+pub(super) fn files(export: &CExport, standalone: Option<String>) -> Vec<(PathBuf, String)> {
     let name = &export.name;
     let version = env!("CARGO_PKG_VERSION");
     let sentence = format!(
@@ -98,17 +106,18 @@ pub(super) fn files(model: &Model, export: &CExport, follows: bool) -> Vec<(Path
     }
     keywords.extend(model_words);
     let sketch = |name: &str| PathBuf::from(format!("examples/{name}/{name}.ino"));
-    vec![
+    let mut files = vec![
         ("library.properties".into(), properties),
         ("library.json".into(), json),
         ("keywords.txt".into(), keywords),
         (sketch("device"), DEVICE.into()),
-        (sketch("standalone"), standalone(model, export, follows)),
-    ]
+    ];
+    files.extend(standalone.map(|text| (sketch("standalone"), text)));
+    files
 }
 
 /// The sketch for this model.
-fn standalone(model: &Model, export: &CExport, follows: bool) -> String {
+pub(super) fn standalone(model: &Model, export: &CExport, follows: bool, board: Board) -> String {
     let name = &export.name;
     let shout = name.to_uppercase();
     let staged = !export.stages.is_empty();
@@ -157,6 +166,7 @@ fn standalone(model: &Model, export: &CExport, follows: bool) -> String {
     let (off, on) = model.output_range();
     let (low, high) = (off.min(on), off.max(on));
     STANDALONE
+        .replace("@board@\n", if board == Board::Mega { MEGA } else { "" })
         .replace("@states@\n", &states)
         .replace("@start@\n", &starts.concat())
         .replace("@shadow_start@\n", learner(SHADOW_START))

@@ -3,7 +3,7 @@
 use hysteron::control::{Gains, Safety, Scheme};
 use hysteron::{Destination, FirstOrder, Model, Operator, Plane, Sign};
 use hysteron_core::operator_count;
-use hysteron_export::{ArduinoOptions, Board, BoardMemory, CSampling, arduino};
+use hysteron_export::{Arduino, ArduinoOptions, Board, BoardMemory, CSampling, arduino};
 use std::path::Path;
 
 fn model(levels: usize, body: bool) -> Model {
@@ -24,6 +24,15 @@ fn written(
     board: Board,
     adaptation: bool,
 ) -> hysteron::Result<BoardMemory> {
+    Ok(driven(model, folder, (board, adaptation), (0.0, 1.0))?.memory)
+}
+
+fn driven(
+    model: &Model,
+    folder: &Path,
+    (board, adaptation): (Board, bool),
+    drives: (f64, f64),
+) -> hysteron::Result<Arduino> {
     let gains = Gains {
         gain: 0.05,
         integral_s: 0.5,
@@ -35,7 +44,7 @@ fn written(
             lost_s: Some(0.5),
             stuck_s: Some(1.0),
         },
-        ..Scheme::new(0.05, (0.0, 1.0))
+        ..Scheme::new(0.05, drives)
     };
     let options = ArduinoOptions {
         name: None,
@@ -48,7 +57,7 @@ fn written(
         drive: None,
     };
     let target = Destination::keeping_foreign(folder, false);
-    Ok(arduino(model, target, &options, &sampling, &scheme)?.memory)
+    arduino(model, target, &options, &sampling, &scheme)
 }
 
 #[test]
@@ -96,6 +105,32 @@ fn the_files_are_those_that_the_ide_looks_for() {
     assert!(error.to_string().contains("device.ino"), "{error}");
     assert_eq!(std::fs::read_to_string(mine).unwrap(), "mine");
     assert!(read("src/my_spring.h").contains("LEVELS 12"));
+}
+
+/// A drive beyond 0 to 1 would be full power: the sketch that drives alone is not written.
+#[test]
+fn what_drives_alone_has_a_share_of_full_power() {
+    let folder = tempfile::tempdir().unwrap();
+    for (n, (drives, board, alone)) in [
+        ((0.0, 0.7), Board::Uno, true),
+        ((0.0, 1.0), Board::Mega, true),
+        ((20.0, 80.0), Board::Uno, false),
+        ((0.0, 1.01), Board::Uno, false),
+        ((-0.1, 1.0), Board::Uno, false),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let library = folder.path().join(format!("wire{n}"));
+        let made = driven(&model(8, false), &library, (board, false), drives).unwrap();
+        assert_eq!(made.standalone, alone, "{drives:?}");
+        let sketch = std::fs::read_to_string(library.join("examples/standalone/standalone.ino"));
+        assert_eq!(sketch.is_ok(), alone, "{drives:?}");
+        // A Mega's sketch says so where it is compiled for another board.
+        let told = sketch.is_ok_and(|text| text.contains("#error this sketch is for a Mega"));
+        assert_eq!(told, board == Board::Mega);
+        assert!(library.join("examples/device/device.ino").exists());
+    }
 }
 
 #[test]
