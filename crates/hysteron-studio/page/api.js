@@ -12,7 +12,7 @@
 /** @typedef {{fit: number|null, raw: boolean, x: (number|null)[], y: (number|null)[]}} Line */
 /** @typedef {[(number|null)[], (number|null)[]]} Points */
 /** @typedef {{low: number, high: number, beyond: boolean}} Ends */
-/** @typedef {{picture: string, x: string, y: string, lines: Line[], ends: [Ends|null, Ends|null], samples: number, span: [number, number]|null, begins: number[], marked: [number, number][], held: [number, number][], band: [Points, Points]|null, band_name: string|null, outliers: [number, number][]}} Curves */
+/** @typedef {{picture: string, x: string, y: string, lines: Line[], left_out: {fit: number, why: {problem: string}}[], ends: [Ends|null, Ends|null], samples: number, span: [number, number]|null, begins: number[], marked: [number, number][], held: [number, number][], band: [Points, Points]|null, band_name: string|null, outliers: [number, number][]}} Curves */
 
 const way = document.querySelector('meta[name="hysteron-session"]') ? await import("./local.js") : await import("./http.js");
 

@@ -7,8 +7,8 @@ import { draw, on, plain, roundest, rounds } from "./plot.js";
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
 export const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
 
-/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null, file: number|null}} */
-const now = { kind: "weights", fit: null, chosen: false, at: null, file: null };
+/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null, file: number|null, followed: {row: number, words: string}|null}} */
+const now = { kind: "weights", fit: null, chosen: false, at: null, file: null, followed: null };
 
 /** Shows the states of the operators from now on. */
 export const states = () => (now.kind = "states");
@@ -32,13 +32,14 @@ let chosen = () => {};
 /** @param {(time: number) => void} tell */
 export const onChoice = (tell) => (chosen = tell);
 
-/** Goes to the next sample at which the operator of a cell switches. @param {number} alpha @param {number} beta */
-async function follow(alpha, beta) {
+/** Goes to the next sample at which the operator of a cell switches. @param {number[]} levels @param {number} alpha @param {number} beta */
+async function follow(levels, alpha, beta) {
   if (now.file === null || now.fit === null) return;
   const here = now.at?.[0] === now.file ? now.at[1] : null;
   const sample = await ask("switch", { fit: now.fit, file: now.file, operator: [alpha + 1, beta + 1], after: here }).catch(() => null);
   if (!sample) return;
   now.kind = "states";
+  now.followed = { row: sample.row, words: `The operator that was clicked, on at ${shown(levels[beta])} and off at ${shown(levels[alpha])}, switches at row ${sample.row}. ` };
   chosen(sample.time);
 }
 
@@ -124,9 +125,9 @@ export async function show(overview, drawn, file = now.file) {
   }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: axis, yaxis: { ...axis }, dragmode: false });
   on(by("plot-plane"), "plotly_click", (event) => {
     const { x, y, z } = event.points[0];
-    if (z !== null) follow(Number(x), Number(y));
+    if (z !== null) follow(seen.levels, Number(x), Number(y));
   });
   by("plane-text").textContent = seen.sample
-    ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
+    ? `${now.followed?.row === seen.sample.row ? now.followed.words : ""}The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
     : "One cell for each operator, which switches on at β and off at α. Click a cell for the sample at which it switches, or a sample for its staircase.";
 }

@@ -24,7 +24,10 @@ const now = { file: null, range: [0, 1], at: null, sample: null, overview: null,
  */
 export function show(overview, drawn, file, range, samples) {
   if (file !== now.file) Object.assign(now, { at: null, sample: null });
+  // After a preparation or another fit the same time may be another row and value.
+  const stale = now.at !== null && now.overview !== null && now.overview !== overview;
   Object.assign(now, { overview, drawn, file, range, steps: Math.max(1, samples) });
+  if (stale) to(/** @type {number} */ (now.at));
   const [low, high] = range;
   const title = now.timer ? "Pause" : "Play";
   fill(
@@ -75,7 +78,7 @@ export async function to(time) {
     now.sample = await ask("sample", { file: now.file, fits: [...now.drawn], at: now.at }).catch(() => null);
     by("play-sample").textContent = words();
     by("play-at").value = String(now.at);
-    for (const id of [...OVER_TIME, "plot-loop"]) if (by(id).layout) await mark(by(id), shapes(id));
+    for (const id of [...OVER_TIME, "plot-loop", "plot-over-input"]) if (by(id).layout) await mark(by(id), shapes(id));
     if (now.drawn.size > 0) await plane.at(now.file, now.at, now.overview, now.drawn);
   }
   now.busy = false;
@@ -92,6 +95,8 @@ export function shapes(id) {
   const line = { color: "#d55e00", width: 2 };
   if (OVER_TIME.includes(id)) return [{ type: "line", name: "now", xref: "x", yref: "paper", x0: time, x1: time, y0: 0, y1: 1, line }];
   const round = { type: "circle", name: "now", xsizemode: "pixel", ysizemode: "pixel", xanchor: input, yanchor: output, x0: -7, x1: 7, y0: -7, y1: 7 };
+  // One circle for each fit.
+  if (id === "plot-over-input") return now.sample.modelled.map(([, value]) => ({ ...round, yanchor: value - output, fillcolor: "rgba(213,94,0,.5)", line }));
   return id === "plot-loop" ? [{ ...round, fillcolor: "rgba(213,94,0,.5)", line }] : [];
 }
 

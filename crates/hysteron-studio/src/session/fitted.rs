@@ -30,6 +30,8 @@ pub(super) struct Fitted {
     pub(super) output: (f64, f64),
     /// Median time step of the recordings, in seconds.
     pub(super) dt: Option<f64>,
+    /// A number for the samples fitted, the same for the same samples.
+    pub(super) samples: u64,
     /// The modelled output on each file that it was drawn with.
     pub(super) courses: BTreeMap<Id, (Arc<Vec<f64>>, Budget)>,
     /// Half the width of the band there.
@@ -112,6 +114,23 @@ impl Fitted {
         }
     }
 
+    /// Whether another fit was tested on the same samples as this one. A file that was prepared, or
+    /// read in another way, is another test.
+    fn is_tested_as(&self, other: &Self) -> bool {
+        let (Some(own), Some(others)) = (self.tested(), other.tested()) else {
+            return false;
+        };
+        // An error of zero has no range in it.
+        let range =
+            |errors: &Errors| Some(errors.rmse / errors.nrmse_percent?).filter(|r| r.is_finite());
+        let is_near = match (range(own), range(others)) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
+            _ => true,
+        };
+        let is_same = self.test() == other.test() && self.samples == other.samples;
+        is_same && own.samples == others.samples && is_near
+    }
+
     /// What tested it.
     fn test(&self) -> (&str, &[Id], &[Id]) {
         // Files for validation test whatever was fitted; parts are those of the files fitted.
@@ -140,12 +159,13 @@ pub(super) fn best(fits: &[Fitted]) -> (Option<Id>, &'static str) {
         let by = "the smallest error of the fit: nothing was held out";
         return (least(&mut fitted), by);
     };
-    let alike = tested
-        .clone()
-        .filter(|(_, fit)| fit.test() == newest.test());
+    let alike = tested.clone().filter(|(_, fit)| fit.is_tested_as(newest));
     let by = match alike.clone().count() == tested.count() {
         true => "the smallest error on what was held out",
-        false => "the smallest error on what was held out from the newest fit, too",
+        false => {
+            "the smallest error on what was held out from the newest fit, too: others had another test, and \
+             are not compared"
+        }
     };
     (least(&mut alike.map(|(error, fit)| (error, fit.id))), by)
 }

@@ -10,6 +10,7 @@ use hysteron::{
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -172,6 +173,7 @@ impl Job {
             input: ends(|r| &r.input),
             output: ends(|r| &r.output),
             dt: time.and_then(median_step),
+            samples: number(&self.recordings),
             files: self.fitted,
             options: self.options,
             words: self.words,
@@ -187,6 +189,17 @@ impl Job {
             reached: None,
         })
     }
+}
+
+/// A number for samples.
+fn number(recordings: &[Recording]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for recording in recordings {
+        for value in recording.input.iter().chain(&recording.output) {
+            hasher.write_u64(value.to_bits());
+        }
+    }
+    hasher.finish()
 }
 
 fn median_step(time: &[f64]) -> Option<f64> {

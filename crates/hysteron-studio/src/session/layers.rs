@@ -49,7 +49,9 @@ impl Session {
             marked: times(&opened.marked),
             ..Layers::default()
         };
-        let Some(fit) = view.of else {
+        // A fit that cannot be run on this file has no layers on it.
+        let runs = |fit: &Id| self.course(*fit, view.file).is_ok();
+        let Some(fit) = view.of.filter(runs) else {
             return Ok(layers);
         };
         layers.held = times(&self.rows_held(fit, view.file)?);

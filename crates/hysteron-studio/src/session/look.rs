@@ -23,6 +23,8 @@ pub struct Curves {
     pub y: String,
     /// The lines.
     pub lines: Vec<Line>,
+    /// Fits that cannot be drawn on this file, and why.
+    pub left_out: Vec<LeftOut>,
     /// What the axes show, as far as the lines say it: a few samples far away are left out.
     pub ends: [Option<Ends>; 2],
     /// Samples in the window and the area.
@@ -32,6 +34,15 @@ pub struct Curves {
     /// What is drawn besides them.
     #[serde(flatten)]
     pub layers: Layers,
+}
+
+/// A fit that has no line.
+#[derive(Debug, Clone, Serialize)]
+pub struct LeftOut {
+    /// The fit.
+    pub fit: Id,
+    /// Why it has none.
+    pub why: Fault,
 }
 
 /// A line. A gap has `None` in both.
@@ -72,13 +83,30 @@ impl Session {
         Ok(course)
     }
 
+    /// The modelled outputs of those fits that can be run on a file, and why the others cannot: they
+    /// may need a time or a load that it does not have.
+    #[expect(clippy::type_complexity, reason = "two lists")]
+    pub(super) fn courses(
+        &mut self,
+        fits: &[Id],
+        file: Id,
+    ) -> Result<(Vec<(Id, Arc<Vec<f64>>)>, Vec<LeftOut>), Fault> {
+        few(fits)?;
+        self.file(file)?.parts()?;
+        let (mut courses, mut left_out) = (Vec::new(), Vec::new());
+        for &fit in fits {
+            self.fitted(fit)?;
+            match self.course(fit, file) {
+                Ok(course) => courses.push((fit, course)),
+                Err(why) => left_out.push(LeftOut { fit, why }),
+            }
+        }
+        Ok((courses, left_out))
+    }
+
     pub(super) fn curves(&mut self, view: &View) -> Result<Curves, Fault> {
         let parts = self.file(view.file)?.parts()?.clone();
-        few(&view.fits)?;
-        let mut courses = Vec::new();
-        for &fit in &view.fits {
-            courses.push((fit, self.course(fit, view.file)?));
-        }
+        let (courses, left_out) = self.courses(&view.fits, view.file)?;
         let seen = Seen::new(&parts, view);
         let recording = seen.recording;
         let (input, output) = (
@@ -159,6 +187,7 @@ impl Session {
             x,
             y,
             lines,
+            left_out,
             ends: [across, up],
             samples: seen.kept().count(),
             span: seen.kept().next().map(|n| {

@@ -45,17 +45,14 @@ impl Picture {
 impl Session {
     /// The sample of a picture nearest to a point of it.
     pub(super) fn nearest(&mut self, view: &View, at: Point) -> Result<SampleView, Fault> {
-        let mut courses = Vec::new();
-        for fit in &view.fits {
-            courses.push(self.course(*fit, view.file)?);
-        }
+        let (courses, _) = self.courses(&view.fits, view.file)?;
         let parts = self.file(view.file)?.parts()?.clone();
         let seen = Seen::new(&parts, view);
         let recording = seen.recording;
         let is_histogram = view.picture == Picture::Histogram;
         let at = if is_histogram { [at[0], 0.0] } else { at };
         let mut found = (f64::INFINITY, 0);
-        let lines = std::iter::once(None).chain(courses.iter().map(Some));
+        let lines = std::iter::once(None).chain(courses.iter().map(|(_, course)| Some(course)));
         for course in lines {
             let course = course.map(|course| &course[..]);
             let points = || {

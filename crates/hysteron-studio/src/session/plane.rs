@@ -2,7 +2,6 @@
 
 use super::fault::Fault;
 use super::id::Id;
-use super::look::few;
 use super::state::Session;
 use super::thinned::when;
 use hysteron::{Model, Recording, State, Surroundings, operators};
@@ -72,11 +71,9 @@ impl Session {
         n: usize,
     ) -> Result<SampleView, Fault> {
         let recording = self.file(file)?.recording()?.clone();
-        few(fits)?;
-        let mut modelled = Vec::new();
-        for &fit in fits {
-            modelled.push((fit, self.course(fit, file)?[n]));
-        }
+        let (courses, _) = self.courses(fits, file)?;
+        let modelled = courses.iter().map(|(fit, course)| (*fit, course[n]));
+        let modelled = modelled.collect();
         Ok(SampleView {
             row: n + 1,
             time: when(&recording, n),

@@ -115,6 +115,8 @@ pub(super) struct SavedFit {
     input: (f64, f64),
     output: (f64, f64),
     dt: Option<f64>,
+    #[serde(default)]
+    samples: u64,
     model: Value,
 }
 
@@ -132,6 +134,7 @@ impl SavedFit {
             input: fit.input,
             output: fit.output,
             dt: fit.dt,
+            samples: fit.samples,
             model: serde_json::from_str(&fit.model.to_json()).ok()?,
         })
     }
@@ -165,6 +168,7 @@ impl SavedFit {
             input: self.input,
             output: self.output,
             dt: self.dt,
+            samples: self.samples,
             courses: BTreeMap::new(),
             bands: BTreeMap::new(),
             held: BTreeMap::new(),

@@ -93,6 +93,85 @@ fn a_part_of_the_loop_is_the_same_samples_in_every_picture() {
     assert_eq!(seen.unwrap()["files"][0]["samples"], rows.len());
 }
 
+/// A fit that needs a time is left out of the pictures of a file without one, by name; others are
+/// drawn.
+#[test]
+fn a_fit_that_cannot_be_drawn_is_named_and_hides_no_other() {
+    let (mut session, file, fit) = fitted(0.0);
+    let timed = json!({"levels": "6", "bootstrap": "0", "smooth": "off", "creep": "auto",
+        "thermal": "first-order"});
+    let timed = ask(
+        &mut session,
+        json!({"request": "fit", "options": timed, "hold_out": "nothing"}),
+    )
+    .unwrap();
+    let other = session.open("static.csv", table(0.0).into()).unwrap();
+    let roles = json!({"input": "temperature [degC]", "output": "displacement [mm]"});
+    let columns = json!({"request": "columns", "file": other, "roles": roles});
+    ask(&mut session, columns).unwrap();
+    for picture in ["output", "loop", "residuals", "histogram"] {
+        let view = json!({"request": "curves", "file": other, "fits": [fit, timed], "of": timed,
+            "band": true, "picture": picture, "pixels": [600, 400]});
+        let seen = ask(&mut session, view).unwrap();
+        let drawn: Vec<_> = seen["lines"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|line| line["fit"].clone())
+            .collect();
+        assert!(
+            drawn.contains(&json!(fit)) && !drawn.contains(&timed),
+            "{picture}: {drawn:?}"
+        );
+        assert_eq!(seen["left_out"][0]["fit"], timed);
+        assert!(
+            seen["left_out"][0]["why"]["problem"]
+                .as_str()
+                .unwrap()
+                .contains("time")
+        );
+    }
+    let sample = json!({"request": "sample", "file": other, "fits": [fit, timed], "at": 100.0});
+    assert_eq!(
+        ask(&mut session, sample).unwrap()["modelled"]
+            .as_array()
+            .unwrap()
+            .len(),
+        1
+    );
+    // One that is not there at all is an error, as ever.
+    let view = json!({"request": "curves", "file": file, "fits": [fit + 99], "picture": "loop",
+        "pixels": [600, 400]});
+    assert!(ask(&mut session, view).is_err());
+}
+
+/// Errors on other data are not compared: the newest test counts.
+#[test]
+fn the_best_fit_is_one_of_those_with_the_same_test() {
+    let mut session = Session::new(1 << 28);
+    let file = session.open("run.csv", table(0.3).into()).unwrap();
+    let mut fit = |session: &mut Session, levels: &str| {
+        let options = json!({"levels": levels, "bootstrap": "0", "smooth": "off"});
+        let request = json!({"request": "fit", "options": options});
+        ask(session, request).unwrap()
+    };
+    let raw = fit(&mut session, "12");
+    let best = |session: &mut Session| {
+        ask(session, json!({"request": "overview"})).unwrap()["best"].clone()
+    };
+    assert_eq!(best(&mut session), raw);
+    let steps = json!({"spikes": "auto", "low_pass": "auto"});
+    let _ = ask(
+        &mut session,
+        json!({"request": "prepare", "file": file, "steps": steps}),
+    )
+    .unwrap();
+    let prepared = fit(&mut session, "2");
+    assert_eq!(best(&mut session), prepared, "a test of its own");
+    let better = fit(&mut session, "12");
+    assert_eq!(best(&mut session), better);
+}
+
 /// A click in the plane goes from one switch of the operator to the next: its state there is on the
 /// other side of one half than at the sample before.
 #[test]

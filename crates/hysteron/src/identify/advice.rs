@@ -149,7 +149,7 @@ impl Advice {
         match self {
             Self::Clipped { .. } => Remedy::new("widen {}", [Setting::any("range")]),
             Self::AgainstInput { part } if *part > 0.5 => Remedy::new(
-                "leave {} out; if it was not set, the output hardly depends on this input",
+                "look whether the output moves at all, and with this input; if {} was set, leave it out",
                 [Setting::any("sign")],
             ),
             Self::AgainstInput { .. } => Remedy::new(

@@ -98,7 +98,8 @@ fn place_in((first, place): (usize, Place), row: usize) -> Place {
     }
 }
 
-#[cfg(all(test, feature = "data"))]
+#[cfg(test)]
+#[cfg(feature = "data")]
 mod tests {
     use super::*;
     use rand_chacha::ChaCha8Rng;
