@@ -158,18 +158,22 @@ pub unsafe extern "C" fn hysteron_run_in(
         };
         STATES.with(state, "state", &mut arguments, |state| {
             finite(input)?;
+            let mut done = 0;
             moved(state, |state| {
                 for (n, &input) in input.iter().enumerate() {
                     let (dt, load) = Around::new(state.model(), time, last_time, load).at(n);
                     let step = state.step(Sample { input, dt, load })?;
                     output.set(n, step.output);
                     clipped.set(n, clipped_constant(step.clipped));
+                    done = n + 1;
                 }
                 Ok(())
             })
             .inspect_err(|_| {
-                output.zeros();
-                clipped.zeros();
+                if done > 0 {
+                    output.zeros();
+                    clipped.zeros();
+                }
             })
         })
     })
@@ -306,6 +310,7 @@ pub unsafe extern "C" fn hysteron_inverse_run_in(
         STATES.with(state, "state", &mut arguments, |state| {
             finite(target)?;
             (0..count).try_for_each(|n| of_target(n).map(|_| ()))?;
+            let mut done = 0;
             moved(state, |state| {
                 for n in 0..count {
                     let (dt, load) = Around::new(state.model(), time, last_time, load).at(n);
@@ -318,12 +323,16 @@ pub unsafe extern "C" fn hysteron_inverse_run_in(
                     let solution = state.solve(wanted, limits)?;
                     input.set(n, solution.input);
                     status.set(n, status_constant(solution.status));
+                    done = n + 1;
                 }
                 Ok(())
             })
             .inspect_err(|_| {
-                input.zeros();
-                status.zeros();
+                // A model without an inverse has written nothing.
+                if done > 0 {
+                    input.zeros();
+                    status.zeros();
+                }
             })
         })
     })

@@ -105,6 +105,12 @@ static void refusals(uint64_t model) {
     OK(hysteron_model_new(HYSTERON_MKP, 0.0, 1.0, 2, negative, 3, 0.0, 1, &other));
     OK(hysteron_state_new(other, &state));
     REQUIRE(hysteron_inverse_step(state, 1.0, HYSTERON_HOLD, 0.0, &input, &status) == HYSTERON_NEGATIVE_WEIGHTS);
+    /* What is refused writes nothing. */
+    double kept[2] = {3.0, 4.0};
+    int32_t marks[2] = {7, 8};
+    const double wanted[2] = {1.0, 2.0};
+    REQUIRE(hysteron_inverse_run(state, wanted, NULL, 0.0, kept, marks, 2) == HYSTERON_NEGATIVE_WEIGHTS);
+    REQUIRE(kept[0] == 3.0 && kept[1] == 4.0 && marks[0] == 7 && marks[1] == 8);
     REQUIRE(hysteron_adaptive_new(other, NULL, &adaptive) == HYSTERON_NEGATIVE_WEIGHTS);
     OK(hysteron_state_free(state));
     OK(hysteron_model_free(other));

@@ -150,7 +150,7 @@ fn a_fit_that_cannot_be_drawn_is_named_and_hides_no_other() {
 fn the_best_fit_is_one_of_those_with_the_same_test() {
     let mut session = Session::new(1 << 28);
     let file = session.open("run.csv", table(0.3).into()).unwrap();
-    let mut fit = |session: &mut Session, levels: &str| {
+    let fit = |session: &mut Session, levels: &str| {
         let options = json!({"levels": levels, "bootstrap": "0", "smooth": "off"});
         let request = json!({"request": "fit", "options": options});
         ask(session, request).unwrap()
