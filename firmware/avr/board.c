@@ -3,10 +3,10 @@
  * clock: after each sample the board waits until the answer is there, so that a slow host is no
  * delay, unless --cut has cut the line.
  *
- *   board ELF [--pty] [--mega] [--seconds S] [--trace FILE] [--stack] [--strength X]
+ *   board ELF [--pty] [--mega] [--wire] [--seconds S] [--trace FILE] [--stack] [--strength X]
  *             [--cut S] [--hang S] [--noise P] [--loose S] [--restart S]
  *
- * --strength: another actuator (plant.h). The trace has a row for each millisecond, or for ten with
+ * --wire, --strength: another actuator (plant.h). The trace has a row for each millisecond, or for ten with
  * --strength: time, wanted and actual position, drive. --stack prints the most bytes that the stack
  * ever took. */
 #define _GNU_SOURCE
@@ -110,7 +110,7 @@ static avr_cycle_count_t tick(avr_t *avr, avr_cycle_count_t when, void *param) {
     /* An ADC has noise of a step (5 mV). A sensor without any would look as if it stood still. */
     avr_raise_irq(adc + ADC_IRQ_ADC0, now < loose ? 500 * spring.mm + 10 * (chance() - 0.5) : 0);
     avr_raise_irq(adc + ADC_IRQ_ADC1, 500 * wanted + 10 * (chance() - 0.5));
-    if (trace && (strength == 0 || fmod(now + 5e-4, 0.01) < 1e-3))
+    if (trace && (strength <= 0 || fmod(now + 5e-4, 0.01) < 1e-3))
         fprintf(trace, "%.3f,%.5f,%.5f,%.5f\n", now, wanted, spring.mm, drive);
     listen(0);
     for (n = 0; n < PER_MS && from < to; n++)
@@ -164,6 +164,10 @@ int main(int count, char **args) {
         if (!strcmp(option, "--mega")) {
             chip = "atmega2560";
             is_mega = 1;
+            continue;
+        }
+        if (!strcmp(option, "--wire")) {
+            strength = WIRE;
             continue;
         }
         if (!strcmp(option, "--stack")) {

@@ -11,7 +11,7 @@ const STANDALONE: &str = include_str!("../../arduino/standalone.ino");
 /// The linker of a smaller board would say that a section does not fit.
 const MEGA: &str = "\
 #if defined(RAMEND) && RAMEND < 0x21FF
-#error this sketch is for a Mega: export the model with --board uno
+#error this sketch is for a Mega: export the model again, for this board
 #endif
 ";
 
