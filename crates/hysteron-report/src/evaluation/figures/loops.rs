@@ -8,7 +8,8 @@ use crate::evaluation::view::View;
 use crate::figure::Figure;
 use crate::panels::single;
 
-const WIDTH: f64 = 620.0;
+/// With the residuals beside it, within a page of 1,280 pixels.
+const WIDTH: f64 = 600.0;
 const PLOT_HEIGHT: f64 = 420.0;
 
 pub(crate) fn figure<'a>() -> Figure<View<'a>> {
