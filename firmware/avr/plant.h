@@ -1,8 +1,8 @@
 /* Simulated actuators, none of them one of hysteron's models.
  *
- * SPRING: a spring of a shape memory alloy under a weight: heat, then plays of nine widths on it, each
+ * A spring of a shape memory alloy under a weight: heat, then plays of nine widths on it, each
  * through its own curve.
- * WIRE: a wire against a spring: cosine kinetics (Liang and Rogers 1990), whose temperatures rise with
+ * WIRE, a wire against a spring: cosine kinetics (Liang and Rogers 1990), whose temperatures rise with
  * the stress, and which bind heat while the wire pulls.
  * With a strength above 0 it is another actuator, whose input acts at once, as that of a piezo: the
  * plays of the spring, and a stroke that is so many times as long. */
@@ -15,13 +15,12 @@
 #define WARMER 90.0    /* at full drive, K */
 #define COOLING_S 2.0  /* time constant */
 #define STROKE 8.0     /* mm */
-#define SPRING 0.0
 #define WIRE -1.0
 #define BOUND 40.0     /* heat that the whole transformation binds, as K of the wire: 20 J/g */
 #define STRESSED 6.0   /* by so many K the pulled spring raises all temperatures */
 
 typedef struct {
-    double heat, mm, play[PLAYS], strength; /* strength: SPRING, WIRE, or above 0 */
+    double heat, mm, play[PLAYS], strength; /* strength: 0 for the spring, WIRE, or above 0 */
     double cold, scale;                     /* share that is martensite, and of the branch */
     int warms;
 } plant;

@@ -155,6 +155,7 @@ async function picture([band, id], mine) {
   const overTime = OVER_TIME.has(band);
   const isPart = now.area.input !== null || now.area.output !== null;
   if (band === "output") {
+    by("look-left-out").hidden = curves.left_out.length === 0;
     by("look-left-out").textContent = curves.left_out.map(({ fit, why }) => `Fit ${place(fit) + 1} is not drawn on this file: ${why.problem}.`).join(" ");
     Object.assign(now, { span: curves.span, samples: curves.samples });
     if (!now.window && !isPart) now.whole = curves.span;

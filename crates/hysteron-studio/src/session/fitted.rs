@@ -30,8 +30,8 @@ pub(super) struct Fitted {
     pub(super) output: (f64, f64),
     /// Median time step of the recordings, in seconds.
     pub(super) dt: Option<f64>,
-    /// A number for the samples fitted, the same for the same samples.
-    pub(super) samples: u64,
+    /// A number for the samples that its test is of, the same for the same samples.
+    pub(super) tested_on: u64,
     /// The modelled output on each file that it was drawn with.
     pub(super) courses: BTreeMap<Id, (Arc<Vec<f64>>, Budget)>,
     /// Half the width of the band there.
@@ -117,18 +117,7 @@ impl Fitted {
     /// Whether another fit was tested on the same samples as this one. A file that was prepared, or
     /// read in another way, is another test.
     fn is_tested_as(&self, other: &Self) -> bool {
-        let (Some(own), Some(others)) = (self.tested(), other.tested()) else {
-            return false;
-        };
-        // An error of zero has no range in it.
-        let range =
-            |errors: &Errors| Some(errors.rmse / errors.nrmse_percent?).filter(|r| r.is_finite());
-        let is_near = match (range(own), range(others)) {
-            (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
-            _ => true,
-        };
-        let is_same = self.test() == other.test() && self.samples == other.samples;
-        is_same && own.samples == others.samples && is_near
+        self.test() == other.test() && self.tested_on == other.tested_on
     }
 
     /// What tested it.

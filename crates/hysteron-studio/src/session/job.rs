@@ -168,12 +168,19 @@ impl Job {
             fair_ends(values).map_or((0.0, 0.0), |ends| (ends.low, ends.high))
         };
         let time = self.recordings.iter().find_map(|r| r.time.as_deref());
+        // Whole recordings test whatever was fitted; a part is one of what was fitted.
+        let fitted = self.recordings.iter();
+        let tested_on = match &self.hold_out {
+            Some(HoldOut::Recordings(whole)) => number(whole.iter()),
+            Some(HoldOut::Both(_, whole)) => number(fitted.chain(whole)),
+            _ => number(fitted),
+        };
         Ok(Fitted {
             id: self.id,
             input: ends(|r| &r.input),
             output: ends(|r| &r.output),
             dt: time.and_then(median_step),
-            samples: number(&self.recordings),
+            tested_on,
             files: self.fitted,
             options: self.options,
             words: self.words,
@@ -192,7 +199,7 @@ impl Job {
 }
 
 /// A number for samples.
-fn number(recordings: &[Recording]) -> u64 {
+fn number<'a>(recordings: impl Iterator<Item = &'a Recording>) -> u64 {
     let mut hasher = DefaultHasher::new();
     for recording in recordings {
         for value in recording.input.iter().chain(&recording.output) {

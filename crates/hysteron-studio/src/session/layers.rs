@@ -134,10 +134,7 @@ impl Session {
             "the band of a model",
         )?;
         let of = |recording: &Recording| {
-            let around = Surroundings {
-                time: recording.time.as_deref().filter(|_| model.reads_time()),
-                load: recording.load.as_deref().filter(|_| model.load.is_some()),
-            };
+            let around = Surroundings::from_recording(&model, recording);
             let (low, high) = model.band_in(&recording.input, around)?;
             let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low));
             Ok::<Vec<f64>, Fault>(half.collect())

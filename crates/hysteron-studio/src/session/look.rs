@@ -36,6 +36,9 @@ pub struct Curves {
     pub layers: Layers,
 }
 
+/// A fit, and its modelled output.
+pub(super) type Course = (Id, Arc<Vec<f64>>);
+
 /// A fit that has no line.
 #[derive(Debug, Clone, Serialize)]
 pub struct LeftOut {
@@ -85,12 +88,11 @@ impl Session {
 
     /// The modelled outputs of those fits that can be run on a file, and why the others cannot: they
     /// may need a time or a load that it does not have.
-    #[expect(clippy::type_complexity, reason = "two lists")]
     pub(super) fn courses(
         &mut self,
         fits: &[Id],
         file: Id,
-    ) -> Result<(Vec<(Id, Arc<Vec<f64>>)>, Vec<LeftOut>), Fault> {
+    ) -> Result<(Vec<Course>, Vec<LeftOut>), Fault> {
         few(fits)?;
         self.file(file)?.parts()?;
         let (mut courses, mut left_out) = (Vec::new(), Vec::new());
@@ -200,7 +202,7 @@ impl Session {
 }
 
 /// Refuses more fits than a session has.
-pub(super) fn few(fits: &[Id]) -> Result<(), Fault> {
+fn few(fits: &[Id]) -> Result<(), Fault> {
     match fits.len() > MOST {
         false => Ok(()),
         true => Err(Fault::missing(

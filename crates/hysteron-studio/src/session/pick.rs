@@ -97,10 +97,7 @@ impl Session {
         let after = after.map(|time| nearest(shown, time));
         let (mut begin, mut first) = (0, None);
         for recording in parts.all() {
-            let around = Surroundings {
-                time: recording.time.as_deref().filter(|_| model.reads_time()),
-                load: recording.load.as_deref().filter(|_| model.load.is_some()),
-            };
+            let around = Surroundings::from_recording(&model, recording);
             let acting = model.acting(&recording.input, around)?;
             let mut state = model.start();
             let mut was = None;

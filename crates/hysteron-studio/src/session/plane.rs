@@ -162,10 +162,7 @@ impl Session {
         };
         let rows = from..count;
         let model = &fitted.model;
-        let around = Surroundings {
-            time: recording.time.as_deref().filter(|_| model.reads_time()),
-            load: recording.load.as_deref().filter(|_| model.load.is_some()),
-        };
+        let around = Surroundings::from_recording(model, recording);
         let acting = model.acting(&recording.input, around)?;
         let around = Surroundings {
             time: around.time.map(|time| &time[rows.clone()]),

@@ -116,7 +116,7 @@ pub(super) struct SavedFit {
     output: (f64, f64),
     dt: Option<f64>,
     #[serde(default)]
-    samples: u64,
+    tested_on: u64,
     model: Value,
 }
 
@@ -134,7 +134,7 @@ impl SavedFit {
             input: fit.input,
             output: fit.output,
             dt: fit.dt,
-            samples: fit.samples,
+            tested_on: fit.tested_on,
             model: serde_json::from_str(&fit.model.to_json()).ok()?,
         })
     }
@@ -168,7 +168,7 @@ impl SavedFit {
             input: self.input,
             output: self.output,
             dt: self.dt,
-            samples: self.samples,
+            tested_on: self.tested_on,
             courses: BTreeMap::new(),
             bands: BTreeMap::new(),
             held: BTreeMap::new(),
