@@ -172,6 +172,30 @@ fn the_best_fit_is_one_of_those_with_the_same_test() {
     assert_eq!(best(&mut session), better);
 }
 
+/// A file for validation tests whatever was fitted: such fits are compared, though what they were
+/// fitted to differs.
+#[test]
+fn fits_of_other_data_with_one_test_are_compared() {
+    let mut session = Session::new(1 << 28);
+    let own = session.open("one.csv", table(0.3).into()).unwrap();
+    let test = session.open("test.csv", table(0.1).into()).unwrap();
+    let mut ask = |request| ask(&mut session, request).unwrap();
+    let purpose =
+        |file: Id, purpose: &str| json!({"request": "use", "file": file, "purpose": purpose});
+    let fit = |levels: &str| {
+        let options = json!({"levels": levels, "bootstrap": "0", "smooth": "off"});
+        json!({"request": "fit", "options": options})
+    };
+    ask(purpose(test, "validate"));
+    let better = ask(fit("12"));
+    // Other samples are fitted, with the same test.
+    ask(
+        json!({"request": "prepare", "file": own, "steps": {"spikes": "auto", "low_pass": "auto"}}),
+    );
+    ask(fit("2"));
+    assert_eq!(ask(json!({"request": "overview"}))["best"], better);
+}
+
 /// A click in the plane goes from one switch of the operator to the next: its state there is on the
 /// other side of one half than at the sample before.
 #[test]
