@@ -23,7 +23,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let given = Given {
         input: args.input.as_deref(),
         output: args.output.as_deref(),
-        time: args.prepare.time.as_deref(),
+        time: args.time.as_deref(),
         load: load.as_deref(),
     };
     let named = Named::of(&args.data, &given, &args.repair)?;

@@ -18,17 +18,22 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
-    let held_out = args.how.hold_out.iter().filter_map(|what| match what {
-        args::HoldOut::File(file) => Some(file),
-        args::HoldOut::Part(_) => None,
-    });
+    let held_out = args
+        .how
+        .tests
+        .hold_out
+        .iter()
+        .filter_map(|what| match what {
+            args::HoldOut::File(file) => Some(file),
+            args::HoldOut::Part(_) => None,
+        });
     let inputs = args.data.iter().chain(&args.repeat).chain(held_out);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let given = Given {
-        input: args.how.input.as_deref(),
-        output: args.how.output.as_deref(),
-        time: args.how.prepare.time.as_deref(),
-        load: args.how.load.as_deref(),
+        input: args.how.columns.input.as_deref(),
+        output: args.how.columns.output.as_deref(),
+        time: args.how.columns.time.as_deref(),
+        load: args.how.columns.load.as_deref(),
     };
     let named = Named::of(inputs[0], &given, &args.how.repair)?;
     let columns = named.columns();
@@ -96,8 +101,11 @@ fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Vec<Prepa
         .enumerate()
         .map(|(n, mut recording)| {
             let units = [
-                (&args.how.input_unit, &mut recording.input_quantity),
-                (&args.how.output_unit, &mut recording.output_quantity),
+                (&args.how.columns.input_unit, &mut recording.input_quantity),
+                (
+                    &args.how.columns.output_unit,
+                    &mut recording.output_quantity,
+                ),
             ];
             for (unit, quantity) in units {
                 if unit.is_some() {
@@ -135,61 +143,65 @@ fn identify(
 
 /// The fit that the options ask for.
 pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
-    let levels = match args.levels {
+    let levels = match args.plane.levels {
         args::Levels::Auto => Choice::Auto,
         args::Levels::Fixed(levels) => Choice::Fixed(levels),
     };
     let options = FitOptions {
-        operator: args.operator.into(),
-        range: args.range,
-        solver: match args.solver {
+        operator: args.plane.operator.into(),
+        range: args.plane.range,
+        solver: match args.weights.solver {
             args::Solver::Nnls => Solver::Nnls,
             args::Solver::Ols => Solver::Ols,
         },
-        sign: match args.sign {
+        sign: match args.plane.sign {
             args::Sign::Auto => None,
             args::Sign::Positive => Some(Sign::Positive),
             args::Sign::Negative => Some(Sign::Negative),
         },
-        offset: args.offset,
-        ridge: args.ridge,
-        robust: args.robust == args::Robust::Auto,
-        load_law: match args.load_law {
+        offset: args.plane.offset,
+        ridge: args.weights.ridge,
+        robust: args.weights.robust == args::Robust::Auto,
+        load_law: match args.stages.load_law {
             args::LoadLaw::Auto => LoadLaw::Auto,
             args::LoadLaw::Shift => LoadLaw::Shift,
             args::LoadLaw::Weights => LoadLaw::Weights,
         },
-        load_degree: match args.load_degree {
+        load_degree: match args.stages.load_degree {
             args::Degree::Auto => None,
             args::Degree::Fixed(degree) => Some(degree),
         },
-        spacing: match args.spacing {
+        spacing: match args.plane.spacing {
             args::Spacing::Uniform => Spacing::Uniform,
             args::Spacing::Auto => Spacing::Auto,
         },
-        delay: count("delay", args.delay)?,
-        creep: count("creep", args.creep)?,
-        lag: match args.lag {
+        delay: count("delay", args.stages.delay)?,
+        creep: count("creep", args.stages.creep)?,
+        lag: match args.stages.lag {
             Step::Auto => Choice::Auto,
             Step::Off => Choice::Fixed(0.0),
             Step::Value(lag) => Choice::Fixed(lag),
         },
-        dynamics: match args.dynamics {
+        dynamics: match args.stages.dynamics {
             args::Dynamics::Auto => Dynamics::Auto,
             args::Dynamics::Off => Dynamics::Off,
             args::Dynamics::Lag => Dynamics::Lag,
             args::Dynamics::Ring => Dynamics::Ring,
         },
-        curve: count("curve", args.curve)?,
+        curve: count("curve", args.stages.curve)?,
         ..FitOptions::plain()
     };
     let fit = Fit::from(options)
         .levels(levels)
-        .smooth(args.smooth)
-        .start(args.start)
-        .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
-        .thermal(args.thermal.map_or(hysteron::Thermal::None, Into::into));
-    match &args.prior {
+        .smooth(args.weights.smooth)
+        .start(args.weights.start)
+        .bootstrap(args.tests.bootstrap.map_or(Choice::Auto, Choice::Fixed))
+        .thermal(
+            args.stages
+                .thermal
+                .map_or(hysteron::Thermal::None, Into::into),
+        );
+    match &args.weights.prior {
         Some(models) => Ok(fit.prior(prior_of_fleet(models)?)),
         None => Ok(fit),
     }

@@ -23,15 +23,15 @@ pub(crate) fn run(args: &args::Fleet) -> Result<()> {
 
 fn fit_all(args: &args::FleetFit) -> Result<()> {
     let how = &args.how;
-    let (Some(input), Some(output)) = (&how.input, &how.output) else {
+    let (Some(input), Some(output)) = (&how.columns.input, &how.columns.output) else {
         return Err("the columns of a fleet are named: give --input and --output".into());
     };
     let columns = Columns {
-        time: how.prepare.time.as_deref(),
-        load: how.load.as_deref(),
+        time: how.columns.time.as_deref(),
+        load: how.columns.load.as_deref(),
         ..Columns::new(input, output)
     };
-    let hold_out = match &how.hold_out[..] {
+    let hold_out = match &how.tests.hold_out[..] {
         [] => None,
         [args::HoldOut::Part(part)] => Some(part.clone()),
         _ => {
@@ -45,8 +45,8 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
         prepare: Some(prepare::steps_of(&how.prepare)),
         hold_out,
         choice: args.choice.into(),
-        input_unit: how.input_unit.clone(),
-        output_unit: how.output_unit.clone(),
+        input_unit: how.columns.input_unit.clone(),
+        output_unit: how.columns.output_unit.clone(),
         ..FleetOptions::new(columns, fit::fit_of(how)?)
     };
     let inputs: Vec<&Path> = args.data.iter().map(PathBuf::as_path).collect();

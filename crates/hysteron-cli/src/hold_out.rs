@@ -11,7 +11,7 @@ pub(crate) fn what(
     read: impl Fn(&Path) -> Result<Vec<Recording>>,
 ) -> Result<Option<HoldOut>> {
     let (mut files, mut held) = (Vec::new(), None);
-    for what in &args.how.hold_out {
+    for what in &args.how.tests.hold_out {
         match (what, &held) {
             (args::HoldOut::File(file), _) => files.extend(read(file)?),
             (args::HoldOut::Part(part), None) => held = Some(part.clone()),

@@ -1,7 +1,7 @@
 //! Arguments of `hysteron fleet`.
 
 use super::common::{Force, Json};
-use super::fit::FitHow;
+use super::fit_how::FitHow;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -42,8 +42,6 @@ pub(crate) struct FleetFit {
     /// each other [default: each file is an actuator, and has the name of the file]
     #[arg(long, value_name = "COL")]
     pub(crate) by: Option<String>,
-    #[command(flatten)]
-    pub(crate) how: FitHow,
     /// Who chooses what is left to the data, such as the levels: some actuators, spread over the
     /// data, for all of them; or each for itself
     #[arg(long, value_name = "WHO", default_value = "pilots")]
@@ -55,6 +53,8 @@ pub(crate) struct FleetFit {
     pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
+    #[command(flatten)]
+    pub(crate) how: FitHow,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -7,6 +7,7 @@ mod adapt;
 mod common;
 mod export;
 mod fit;
+mod fit_how;
 mod fleet;
 mod shell;
 mod studio;
@@ -16,6 +17,7 @@ pub(crate) use adapt::*;
 pub(crate) use common::*;
 pub(crate) use export::*;
 pub(crate) use fit::*;
+pub(crate) use fit_how::*;
 pub(crate) use fleet::*;
 pub(crate) use shell::*;
 pub(crate) use studio::*;
@@ -237,8 +239,10 @@ pub(crate) struct Evaluate {
     /// Column of the output [default: as for --input]
     #[arg(long, value_name = "COL")]
     pub(crate) output: Option<String>,
-    #[command(flatten)]
-    pub(crate) prepare: PrepareFirst,
+    /// Column of time, in seconds or with its unit in its name: for the preparation, a thermal
+    /// body, and figures over time
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
     /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: Start,
@@ -253,6 +257,8 @@ pub(crate) struct Evaluate {
     pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
+    #[command(flatten)]
+    pub(crate) prepare: PrepareFirst,
 }
 
 #[derive(Args)]

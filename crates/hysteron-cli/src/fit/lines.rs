@@ -188,7 +188,7 @@ fn delay_line(model: &Model) -> Option<String> {
 fn curve_line(model: &Model, args: &args::Fit) -> Option<String> {
     let constants = model.constants();
     match constants.get("curve_sums").len() {
-        0 if args.how.curve == Step::Off => None,
+        0 if args.how.stages.curve == Step::Off => None,
         0 => Some("no output curve: it does not predict parts of the recording left out".into()),
         knots => Some(format!("output curve of {} pieces", knots - 1)),
     }
@@ -199,7 +199,7 @@ fn ring_line(model: &Model, args: &args::Fit) -> Option<String> {
     let constants = model.constants();
     let [frequency, damping] = ["ring_frequency", "ring_damping"].map(|name| constants.get(name));
     let (&[frequency], &[damping]) = (frequency, damping) else {
-        let asked = args.how.dynamics == Dynamics::Ring;
+        let asked = args.how.stages.dynamics == Dynamics::Ring;
         return asked.then(|| "no ring: recordings with a load get none".into());
     };
     let mut line = format!(
@@ -218,8 +218,8 @@ fn ring_line(model: &Model, args: &args::Fit) -> Option<String> {
 /// What happens after the operators; said where it was asked for.
 fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
     let (creep, lag) = (model.creep(), model.lag());
-    let lagging = args.how.lag != Step::Off || args.how.dynamics == Dynamics::Lag;
-    let asked = args.how.creep != Step::Off || lagging;
+    let lagging = args.how.stages.lag != Step::Off || args.how.stages.dynamics == Dynamics::Lag;
+    let asked = args.how.stages.creep != Step::Off || lagging;
     let mut said = Vec::new();
     for term in &creep {
         said.push(format!(
