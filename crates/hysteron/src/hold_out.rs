@@ -131,16 +131,15 @@ pub fn fit_holding_out(
     if !ends_alone {
         // A ring that nobody asked for could not be judged.
         fit = fit.without_auto_dynamics();
+        if fit.asks_for_time() {
+            return Err(Error::Fit(
+                "a model that depends on time needs every sample before a row: hold out rows at \
+                 the end, or another recording"
+                    .into(),
+            ));
+        }
     }
     let mut model = fit.run(&training)?;
-    let needs_time = model.is_timed();
-    if needs_time && !ends_alone {
-        return Err(Error::Fit(
-            "a model that depends on time needs every sample before a row: hold out rows at the \
-             end, or another recording"
-                .into(),
-        ));
-    }
     // The state was found after rows that were held out. Before them it is not known.
     if splits[0].held_out[0]
         && model

@@ -258,6 +258,12 @@ impl<'a> Fit<'a> {
         self
     }
 
+    /// Whether a stage that depends on time is asked for, or looked for.
+    pub(crate) fn asks_for_time(&self) -> bool {
+        let dynamics = !matches!(self.options.dynamics, Dynamics::Auto | Dynamics::Off);
+        dynamics || self.options.asks_after() || self.thermal != Thermal::None
+    }
+
     /// Looks for no dynamics that were not asked for.
     pub(crate) fn without_auto_dynamics(mut self) -> Self {
         if self.options.dynamics == Dynamics::Auto {

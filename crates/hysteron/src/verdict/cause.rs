@@ -1,6 +1,6 @@
 //! What is behind an error.
 
-use super::parts::{ErrorPart, PartKind, error_parts};
+use super::parts::{ErrorPart, PartKind, parts_after};
 use crate::evaluate::Evaluation;
 use crate::model::FitSummary;
 use crate::recording::Recording;
@@ -157,11 +157,14 @@ pub(super) fn of_noise(noise: f64, rmse: f64) -> Option<Cause> {
     })
 }
 
-/// The parts that are worth a sentence. A fit has found offset, gain and shift already.
+/// The parts that are worth a sentence. A fit has found offset, gain and shift already: they go
+/// first, since the mean of a drift would pass for an offset.
 pub(super) fn of_parts(recordings: &[Recording], modelled: &[f64], fitted: bool) -> Vec<Cause> {
-    let parts = error_parts(recordings, modelled).into_iter();
-    let is_open =
-        |part: &ErrorPart| !fitted || matches!(part.kind, PartKind::Late | PartKind::Drift);
-    let worth = parts.filter(|part| part.share >= WORTH && is_open(part));
+    let found: &[PartKind] = match fitted {
+        true => &[PartKind::Offset, PartKind::Gain, PartKind::Shift],
+        false => &[],
+    };
+    let parts = parts_after(found, recordings, modelled).into_iter();
+    let worth = parts.filter(|part| part.share >= WORTH && !found.contains(&part.kind));
     worth.map(Cause::Part).collect()
 }

@@ -68,10 +68,19 @@ pub fn error_parts(
     recordings: &(impl AsRef<[Recording]> + ?Sized),
     modelled: &[f64],
 ) -> [ErrorPart; 5] {
+    parts_after(&[], recordings.as_ref(), modelled)
+}
+
+/// As [`error_parts`], but those `named` come first, in their order, whatever they explain.
+pub(super) fn parts_after(
+    named: &[PartKind],
+    recordings: &[Recording],
+    modelled: &[f64],
+) -> [ErrorPart; 5] {
     // The Gram matrix of the five regressors and of the difference itself.
     let mut gram = [[0.0; 6]; 6];
     let mut first = 0;
-    for recording in recordings.as_ref() {
+    for recording in recordings {
         let count = recording.len().min(modelled.len().saturating_sub(first));
         let y = &modelled[first..first + count];
         let (x, measured) = (&recording.input, &recording.output);
@@ -95,17 +104,18 @@ pub fn error_parts(
     let whole = gram;
     let total = whole[5][5];
     let mut left: Vec<usize> = (0..5).collect();
+    let mut named = named.iter();
     [(); 5].map(|()| {
         let explains = |k: usize| match gram[k][k] > LEFT * whole[k][k] && total > 0.0 {
             true => gram[k][5] * gram[k][5] / gram[k][k] / total,
             false => 0.0,
         };
-        let (mut place, mut share) = (0, explains(left[0]));
-        for (other, &k) in left.iter().enumerate().skip(1) {
-            if explains(k) > share {
-                (place, share) = (other, explains(k));
-            }
-        }
+        let stands = |kind: &PartKind| left.iter().position(|&k| PartKind::ALL[k] == *kind);
+        let place = match named.next().and_then(stands) {
+            Some(place) => place,
+            None => most(left.iter().map(|&k| explains(k))),
+        };
+        let share = explains(left[place]);
         let k = left.remove(place);
         let kind = PartKind::ALL[k];
         if share == 0.0 {
@@ -130,4 +140,15 @@ pub fn error_parts(
             size: sign * taken[5] / taken[k],
         }
     })
+}
+
+/// Where the largest of some shares stands, the first of equal ones.
+fn most(shares: impl Iterator<Item = f64>) -> usize {
+    let mut best = (0, 0.0);
+    for (place, share) in shares.enumerate() {
+        if share > best.1 {
+            best = (place, share);
+        }
+    }
+    best.0
 }

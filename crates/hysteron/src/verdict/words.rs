@@ -215,8 +215,9 @@ impl Verdict {
                     ],
                 ),
                 PartKind::Drift => Remedy::new(
-                    "let the specimen settle before you record, or adapt on line (adapt)",
-                    [],
+                    "let the specimen settle before you record, adapt on line (adapt), or fit it with \
+                     the time as {}",
+                    [Setting::any("load")],
                 ),
             },
             Some(Cause::Noise { .. }) => Remedy::new(

@@ -269,3 +269,40 @@ fn an_evaluation_of_errors_alone_has_no_worst_sample() {
         errors.forward.max_abs
     );
 }
+
+/// The weights of a fit take up some of a drift. What is left of it has a mean of zero, and is a
+/// drift all the same.
+#[test]
+fn a_drift_in_what_was_fitted_is_named() {
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let truth = model(&weights(&mut rng));
+        let clean = recording(&truth, |_, y| y);
+        let (_, (low, high)) = clean.ranges();
+        let noise: Vec<f64> = (0..clean.len())
+            .map(|_| rng.random_range(-0.003..0.003) * (high - low))
+            .collect();
+        let size = rng.random_range(0.05..0.2) * if rng.random() { 1.0 } else { -1.0 };
+        for size in [0.0, size * (high - low)] {
+            let along = |n: usize| n as f64 / (clean.len() - 1) as f64;
+            let drifting = recording(&truth, |n, y| y + noise[n] + size * along(n));
+            let model = Fit::new().levels(12).bootstrap(0).run(&drifting).unwrap();
+            let verdict = Verdict::of_fit(&model, &drifting).unwrap();
+            let drift = verdict.causes.iter().find_map(|cause| match cause {
+                Cause::Part(part) if part.kind == PartKind::Drift => Some(part.size),
+                _ => None,
+            });
+            match size {
+                0.0 => assert_eq!(drift, None, "seed {seed}"),
+                _ => {
+                    let found = drift.unwrap_or(0.0);
+                    // The weights take the rest of it.
+                    assert!(
+                        found / size > 0.3 && found / size < 1.1,
+                        "seed {seed}: {found}"
+                    );
+                }
+            }
+        }
+    }
+}

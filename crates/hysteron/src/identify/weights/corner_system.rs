@@ -7,13 +7,15 @@ use crate::identify::weights::nnls::Quadratic;
 use crate::identify::weights::smoothness::Smoothness;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// Weights are held at zero by this multiple of the trace. The error that this leaves shrinks by
 /// about the same factor in each step of conjugate gradients.
 const HELD: f64 = 1e3;
+
+/// Rows that are kept take at most so many bytes. Another row is computed where it is used.
+const HELD_BYTES: usize = 256 << 20;
 
 /// Conjugate gradients end when the residual is this small relative to the right-hand side, or
 /// after so many steps. Rounding ends them earlier.
@@ -38,6 +40,7 @@ pub(crate) struct CornerSystem {
     pub(crate) ridge: f64,
     /// The elements of Gram matrix and prior over corners, without the free columns.
     elements: OnceLock<Vec<f64>>,
+    /// Rows that were computed, as many as [`HELD_BYTES`] has room for.
     rows: Mutex<HashMap<usize, Arc<Vec<f64>>>>,
 }
 
@@ -110,7 +113,23 @@ impl CornerSystem {
         result
     }
 
-    fn elements(&self, with_gram: bool) -> Option<Vec<f64>> {
+    /// A row over weights.
+    pub(crate) fn row(&self, n: usize) -> Arc<Vec<f64>> {
+        let known = || Some(self.rows.lock().ok()?.get(&n)?.clone());
+        known().unwrap_or_else(|| {
+            let mut unit = vec![0.0; self.diagonal.len()];
+            unit[n] = 1.0;
+            let row = Arc::new(self.times(&unit));
+            if let Ok(mut rows) = self.rows.lock()
+                && (rows.len() + 1) * 8 * row.len() <= HELD_BYTES
+            {
+                rows.insert(n, row.clone());
+            }
+            row
+        })
+    }
+
+    fn over_corners(&self, with_gram: bool) -> Option<Vec<f64>> {
         let pattern = self.gram.pattern()?;
         let mut elements = match with_gram {
             true => self.gram.elements(pattern),
@@ -130,7 +149,7 @@ impl CornerSystem {
     /// change from weights to corners has determinant 1.
     pub(crate) fn half_log_determinants(&self) -> Option<(f64, f64)> {
         let pattern = self.gram.pattern()?;
-        let prior = pattern.factor(&self.elements(false)?)?;
+        let prior = pattern.factor(&self.over_corners(false)?)?;
         let everything = vec![true; self.diagonal.len()];
         let solver = Restricted::new(self, &everything)?;
         // |M| = |H| |ZᵀZ − Uᵀ H⁻¹ U| / |ZᵀZ|
@@ -208,19 +227,10 @@ impl Quadratic for CornerSystem {
         self.diagonal[n]
     }
 
-    /// Computed at first use. Few weights are above zero, so few rows are.
-    fn row(&self, n: usize) -> Cow<'_, [f64]> {
-        let known = || Some(self.rows.lock().ok()?.get(&n)?.clone());
-        let row = known().unwrap_or_else(|| {
-            let mut unit = vec![0.0; self.diagonal.len()];
-            unit[n] = 1.0;
-            let row = Arc::new(self.times(&unit));
-            if let Ok(mut rows) = self.rows.lock() {
-                rows.insert(n, row.clone());
-            }
-            row
-        });
-        Cow::Owned(row.to_vec())
+    /// Few weights are above zero, so few rows are needed.
+    fn elements(&self, n: usize, columns: &[usize]) -> Vec<f64> {
+        let row = self.row(n);
+        columns.iter().map(|m| row[*m]).collect()
     }
 
     fn take_from(&self, gradient: &mut [f64], x: &[f64], _: &[usize]) {
@@ -247,7 +257,7 @@ impl<'a> Restricted<'a> {
         let elements = match system.elements.get() {
             Some(elements) => elements,
             None => {
-                let found = system.elements(true)?;
+                let found = system.over_corners(true)?;
                 system.elements.get_or_init(|| found)
             }
         };

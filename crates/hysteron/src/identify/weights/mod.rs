@@ -6,9 +6,11 @@
 //! products of groups of samples, from which fits and their errors follow without the samples.
 //! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal equations
 //! with `nnls`, `pivoting` and `cholesky`. With many levels the Gram matrix is kept sparse, over
-//! Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`.
+//! Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`; `coarse` says where
+//! their search begins.
 
 pub(super) mod cholesky;
+mod coarse;
 pub(super) mod column;
 pub(super) mod corner_gram;
 pub(super) mod corner_system;

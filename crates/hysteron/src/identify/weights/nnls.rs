@@ -5,7 +5,6 @@
 use crate::error::Result;
 use crate::identify::weights::cholesky::Cholesky;
 use crate::progress::Progress;
-use std::borrow::Cow;
 
 /// One step may add one variable, and one more for each group of this many variables above zero.
 /// Adding more at once saves gradients, but many of them leave again.
@@ -26,7 +25,8 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>)
 pub(crate) trait Quadratic {
     fn diagonal(&self, n: usize) -> f64;
 
-    fn row(&self, n: usize) -> Cow<'_, [f64]>;
+    /// The elements of row `n` in some columns.
+    fn elements(&self, n: usize, columns: &[usize]) -> Vec<f64>;
 
     /// Subtracts the product with `x`, which is zero but for the members.
     fn take_from(&self, gradient: &mut [f64], x: &[f64], members: &[usize]);
@@ -37,18 +37,25 @@ struct Dense<'a> {
     count: usize,
 }
 
+impl Dense<'_> {
+    fn row(&self, n: usize) -> &[f64] {
+        &self.elements[n * self.count..(n + 1) * self.count]
+    }
+}
+
 impl Quadratic for Dense<'_> {
     fn diagonal(&self, n: usize) -> f64 {
         self.elements[n * self.count + n]
     }
 
-    fn row(&self, n: usize) -> Cow<'_, [f64]> {
-        Cow::Borrowed(&self.elements[n * self.count..(n + 1) * self.count])
+    fn elements(&self, n: usize, columns: &[usize]) -> Vec<f64> {
+        let row = self.row(n);
+        columns.iter().map(|m| row[*m]).collect()
     }
 
     fn take_from(&self, gradient: &mut [f64], x: &[f64], members: &[usize]) {
         for &n in members {
-            for (g, a) in gradient.iter_mut().zip(self.row(n).iter()) {
+            for (g, a) in gradient.iter_mut().zip(self.row(n)) {
                 *g -= a * x[n];
             }
         }
@@ -68,8 +75,8 @@ pub(crate) fn minimise(
     let rounding = 1e-13 * size;
     let mut set = FreeSet::default();
     let above: Vec<usize> = (0..count).filter(|&n| x[n] > 0.0).collect();
-    let rows: Vec<Cow<'_, [f64]>> = above.iter().map(|n| a.row(*n)).collect();
-    match Cholesky::new(above.len(), |i, j| rows[i][above[j]]) {
+    let rows: Vec<Vec<f64>> = above.iter().map(|n| a.elements(*n, &above)).collect();
+    match Cholesky::new(above.len(), |i, j| rows[i][j]) {
         Some(factor) => {
             set.factor = factor;
             set.members = above;
@@ -78,7 +85,7 @@ pub(crate) fn minimise(
         // again.
         None => {
             for n in above {
-                if !set.take(n, &a.row(n)) {
+                if !set.take(n, a) {
                     x[n] = 0.0;
                 }
             }
@@ -107,7 +114,7 @@ pub(crate) fn minimise(
         }
         wanted.sort_unstable_by(order);
         for &(_, n) in &wanted {
-            set.take(n, &a.row(n));
+            set.take(n, a);
         }
         let moved = set.descend(b, x);
         if moved {
@@ -129,9 +136,10 @@ struct FreeSet {
 
 impl FreeSet {
     /// Adds a variable unless it depends on those in the set. Returns whether it was added.
-    fn take(&mut self, n: usize, row: &[f64]) -> bool {
-        let column = self.members.iter().map(|&m| row[m]).collect();
-        let taken = self.factor.append(column, row[n]);
+    fn take(&mut self, n: usize, a: &impl Quadratic) -> bool {
+        let taken = self
+            .factor
+            .append(a.elements(n, &self.members), a.diagonal(n));
         if taken {
             self.members.push(n);
         }

@@ -140,7 +140,9 @@ impl<'a> Problem<'a> {
                     self.options.prior(),
                     progress,
                 )?;
-                let fitted = self.best_sign(&equations, progress)?;
+                let levels = self.regressor.plane().levels();
+                let start = self.coarse(levels, &free, kept, progress)?;
+                let fitted = self.best_sign(&equations, start, progress)?;
                 let slopes = equations.slopes(&fitted.solution.x);
                 (fitted, slopes)
             };
@@ -178,12 +180,19 @@ impl<'a> Problem<'a> {
         Ok(near.map(|(sign, x, _)| (sign, Some(x))).collect())
     }
 
-    fn best_sign(&self, equations: &NormalEquations<'_>, progress: Progress<'_>) -> Result<Fitted> {
-        let signs = match self.options.sign {
-            Some(sign) => vec![(sign, None)],
+    /// The best weights, of the better sign. A `start` has a sign and weights to begin with.
+    pub(super) fn best_sign(
+        &self,
+        equations: &NormalEquations<'_>,
+        start: Option<(Sign, Vec<f64>)>,
+        progress: Progress<'_>,
+    ) -> Result<Fitted> {
+        let signs = match (self.options.sign, start) {
+            (_, Some((sign, start))) => vec![(sign, Some(start))],
+            (Some(sign), None) => vec![(sign, None)],
             // Without the constraint both signs give the same output.
-            None if self.options.solver == Solver::Ols => vec![(Sign::Positive, None)],
-            None => self.promising(equations, progress)?,
+            (None, None) if self.options.solver == Solver::Ols => vec![(Sign::Positive, None)],
+            (None, None) => self.promising(equations, progress)?,
         };
         let mut best: Option<Fitted> = None;
         for (sign, start) in signs {

@@ -12,7 +12,6 @@ use crate::identify::weights::corner_system::{CornerSystem, eliminate};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::{FreeColumns, Mixed};
 use crate::identify::weights::gram::Gram;
-use crate::identify::weights::nnls::Quadratic;
 use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::smoothness::Smoothness;
@@ -153,7 +152,7 @@ impl Penalised {
                 let count = matrix.len().isqrt();
                 matrix[n * count..(n + 1) * count].to_vec()
             }
-            Matrix::Corners(system) => system.row(n).into_owned(),
+            Matrix::Corners(system) => system.row(n).to_vec(),
         }
     }
 
