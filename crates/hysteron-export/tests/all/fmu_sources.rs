@@ -193,11 +193,11 @@ fn sources_are_there_where_no_time_passes() {
             ),
             Fmi::V3 => {
                 let built = text("buildDescription.xml");
-                let all = files
+                let mut all = files
                     .keys()
                     .filter(|name| Path::new(name).extension() == Some("c".as_ref()));
                 (
-                    all.into_iter().all(|name| built.contains(name.as_str())),
+                    all.all(|name| built.contains(name.as_str())),
                     "hysteron_fmi3.c",
                 )
             }
