@@ -10,6 +10,7 @@ prints what it skips, and fails then if HYSTERON_NO_SKIP is 1. It prints size an
 a Markdown table.
 """
 
+import copy
 import csv
 import json
 import math
@@ -109,6 +110,37 @@ def every_vector(folder, fmus):
                 samples += len(found)
     print(f"   {samples} samples within the vectors' tolerances")
     print(f"   {exact} of them compared with the command's: equal bit for bit")
+
+
+BUILD = """
+import sys
+from fmpy.build import build_platform_binary
+strict = {"CMAKE_C_FLAGS:STRING": "-Werror"}
+build_platform_binary(sys.argv[1], all_warnings=True, cmake_options=strict)
+"""
+
+
+def compiled(fmus):
+    """The sources, compiled by FMPy, give what the binary gives."""
+    if not (has("cc", "gcc") and has("cmake", "cmake")):
+        return
+    samples = 0
+    for (name, fmi), fmu in fmus.items():
+        if vectors()[name]["version"] == 2:
+            check(not (fmu.folder / "sources").exists(), f"{name}: sources with a fixed sample time")
+            continue
+        own = copy.copy(fmu)
+        own.folder = fmu.folder.with_suffix(".own")
+        shutil.copytree(fmu.folder, own.folder)
+        shutil.rmtree(own.folder / "binaries")
+        # What CMake prints is not for here, so in a process of its own.
+        run(sys.executable, "-c", BUILD, own.folder)
+        for run_ in vectors()[name]["runs"]:
+            found, wanted = own.simulate(run_), fmu.simulate(run_)
+            for ours, theirs in zip(found, wanted):
+                check(np.array_equal(ours, theirs), f"{name}, FMI {fmi}: other digits")
+            samples += len(found[0])
+    print(f"   {samples} samples, all equal to the binary's bit for bit")
 
 
 def series(fmus, folder):
@@ -494,6 +526,8 @@ def main():
         folder, fmus = Path(name), {}
         step("every vector through FMPy, FMI 2.0 and 3.0, all descriptions valid")
         every_vector(folder, fmus)
+        step("the sources, compiled")
+        compiled(fmus)
         step("both blocks in series")
         series(fmus, folder)
         step("a model with every stage")

@@ -1020,7 +1020,7 @@ int32_t hysteron_batch_state(uint64_t batch, size_t lane, uint64_t *state);
 const char *hysteron_error_message(int32_t code);
 
 /**
- * The version of this library, for example "0.1.0".
+ * The version of this library, for example "0.2.0".
  */
 const char *hysteron_version(void);
 

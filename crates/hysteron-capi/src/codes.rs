@@ -78,7 +78,7 @@ pub extern "C" fn hysteron_error_message(code: i32) -> *const c_char {
     text_of(code).as_ptr()
 }
 
-/// The version of this library, for example "0.1.0".
+/// The version of this library, for example "0.2.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");

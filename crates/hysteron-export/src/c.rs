@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 pub use written::{CExport, CMemory, CWorstCase};
 
 /// The licence of the algorithm. The model in the files belongs to its maker.
-const LICENCE: &str =
+pub(crate) const LICENCE: &str =
     "Copyright (c) 2026 the hysteron developers. SPDX-License-Identifier: MIT OR Apache-2.0";
 
 /// How to write a model as C.

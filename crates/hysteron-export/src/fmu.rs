@@ -9,6 +9,7 @@ mod description;
 mod model_text;
 mod options;
 mod package;
+mod sources;
 mod staged;
 mod units;
 mod variables;
@@ -19,6 +20,7 @@ use hysteron_files::{AtomicFile, Own};
 use options::Block;
 pub use options::{Fmi, FmuOptions};
 use sha2::{Digest, Sha256};
+use sources::Sources;
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,14 +154,19 @@ fn bytes(model: &Model, options: &FmuOptions, block: Block<'_>) -> Result<(Fmu, 
         (None, Block::Controller(_)) => "sf_Controller_MKP",
     };
     let variables = variables::all(model, block)?;
-    let about = (options.fmi, block);
+    let sources = Sources::new(model, block, options.fmi)?;
+    let compiled = sources.iter().flat_map(Sources::compiled);
+    let compiled: Vec<&str> = compiled.collect();
+    let about = (options.fmi, block, compiled.as_slice());
     let describe = |token: &str| description::xml(model, (name, token), about, &variables);
     let text = |token: &str| model_text::write(model, block, token);
     let token = token(&describe("")?, &text("")?);
+    let description = describe(&token)?;
     let files = package::Files {
-        description: describe(&token)?,
+        description,
         model_text: text(&token)?,
         model_json: model.to_json(),
+        sources: sources.map_or_else(Vec::new, |sources| sources.files(name, &token)),
     };
     let bytes = package::zip(&files, name, options.fmi)?;
     let names = |causality| {

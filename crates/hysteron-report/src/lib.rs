@@ -1,7 +1,8 @@
 //! Figures and a self-contained HTML page from the evaluation of a model on a recording, or from
 //! runs of controllers.
 //!
-//! A [`Report`] draws what is [`Shown`], each figure as SVG and PNG, and puts the figures on one
+//! A [`Report`] draws what is [`Shown`], each figure as SVG and (with the feature
+//! `png`, on by default) as PNG, and puts the figures on one
 //! page, `index.html`, that needs nothing beside it: those that the chapter on the MKP model has in
 //! its section 6, for any recording; residuals of several models beside each other; runs of
 //! controllers over one reference; the actuators of a fleet that are unlike the others.
@@ -25,6 +26,7 @@ mod models;
 mod number;
 mod panels;
 mod plane;
+#[cfg(feature = "png")]
 mod png;
 mod quantity;
 mod report;

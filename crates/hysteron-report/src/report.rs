@@ -4,8 +4,10 @@ use crate::error::ReportError;
 use crate::layout::Layout;
 use crate::made::Made;
 use crate::models::NamedForward;
+#[cfg(feature = "png")]
+use crate::png;
 use crate::track::Tracking;
-use crate::{evaluation, fleet, models, png, track};
+use crate::{evaluation, fleet, models, track};
 use hysteron::Destination;
 use hysteron::{Evaluation, FleetRow, Model, Norm, Recording};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
@@ -87,8 +89,8 @@ pub enum Shown<'a> {
 }
 
 impl Report<'_> {
-    /// Writes `index.html` and each figure as `STEM.svg` and `STEM.png` into `dir`, which is made
-    /// if absent.
+    /// Writes `index.html` and each figure as `STEM.svg` and, with the feature `png`, as `STEM.png`
+    /// into `dir`, which is made if absent.
     ///
     /// The report appears whole or not at all. Files of an earlier report are replaced or removed,
     /// those of others stay; a path alone as `dir` replaces these too where they are in the way.
@@ -122,16 +124,20 @@ impl Report<'_> {
         let layout = self.layout(|_| true)?;
         let mut names = vec![within.join("index.html")];
         for figure in &layout.drawn {
-            let [svg, png] =
-                ["svg", "png"].map(|end| within.join(format!("{}.{end}", figure.stem)));
-            write_file(folder, &svg, figure.drawing.svg.as_bytes())?;
-            let pixels =
-                png::of_svg(&figure.drawing.svg).map_err(|reason| ReportError::Raster {
+            let name = |end| within.join(format!("{}.{end}", figure.stem));
+            let svg = &figure.drawing.svg;
+            write_file(folder, &name("svg"), svg.as_bytes())?;
+            names.push(name("svg"));
+            #[cfg(feature = "png")]
+            {
+                let png = name("png");
+                let pixels = png::of_svg(svg).map_err(|reason| ReportError::Raster {
                     path: folder.path().join(&png),
                     reason,
                 })?;
-            write_file(folder, &png, &pixels)?;
-            names.extend([svg, png]);
+                write_file(folder, &png, &pixels)?;
+                names.push(png);
+            }
         }
         let page = layout.html(self.title, self.made);
         write_file(folder, &names[0], page.as_bytes())?;

@@ -121,3 +121,17 @@ fn a_page_to_read_is_short_and_wrapped() {
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
+
+#[test]
+fn what_is_released_has_one_version() {
+    let version = env!("CARGO_PKG_VERSION");
+    let changes = read(&root().join("CHANGELOG.md"));
+    let mut headings = changes.lines().filter_map(|line| line.strip_prefix("## "));
+    let newest = headings.find(|heading| *heading != "Unreleased").unwrap();
+    assert_eq!(newest.split(' ').next(), Some(version), "CHANGELOG.md");
+    let cited = read(&root().join("CITATION.cff"));
+    assert!(
+        cited.contains(&format!("\nversion: {version}\n")),
+        "CITATION.cff"
+    );
+}

@@ -15,7 +15,7 @@ type Xml = Writer<Vec<u8>>;
 pub(super) fn xml(
     model: &Model,
     (name, token): (&str, &str),
-    (fmi, block): (Fmi, Block<'_>),
+    (fmi, block, sources): (Fmi, Block<'_>, &[&str]),
     variables: &[Variable],
 ) -> Result<String> {
     let about = about(model, block);
@@ -25,7 +25,12 @@ pub(super) fn xml(
     };
     // A loop remembers more than the bytes of a saved state have.
     let is_serial = !matches!(block, Block::Controller(_));
-    let written = write((name, token), (&about, step), (fmi, is_serial), variables);
+    let written = write(
+        (name, token),
+        (&about, step),
+        (fmi, is_serial, sources),
+        variables,
+    );
     let text = written.map(String::from_utf8);
     match text {
         Ok(Ok(text)) => Ok(text + "\n"),
@@ -71,7 +76,7 @@ fn step(model: &Model) -> f64 {
 fn write(
     (name, token): (&str, &str),
     (about, step): (&str, f64),
-    (fmi, is_serial): (Fmi, bool),
+    (fmi, is_serial, sources): (Fmi, bool, &[&str]),
     variables: &[Variable],
 ) -> io::Result<Vec<u8>> {
     let mut xml = Xml::new_with_indent(Vec::new(), b' ', 2);
@@ -92,7 +97,7 @@ fn write(
         ("variableNamingConvention", "flat"),
     ]);
     root.write_inner_content(|xml| {
-        co_simulation(xml, name, fmi, is_serial)?;
+        co_simulation(xml, name, (fmi, is_serial), sources)?;
         unit_definitions(xml, variables)?;
         xml.create_element("LogCategories")
             .write_inner_content(|xml| {
@@ -124,7 +129,12 @@ fn write(
     Ok(xml.into_inner())
 }
 
-fn co_simulation(xml: &mut Xml, name: &str, fmi: Fmi, is_serial: bool) -> io::Result<()> {
+fn co_simulation(
+    xml: &mut Xml,
+    name: &str,
+    (fmi, is_serial): (Fmi, bool),
+    sources: &[&str],
+) -> io::Result<()> {
     let element = xml.create_element("CoSimulation");
     let element = element.with_attributes([
         ("modelIdentifier", name),
@@ -141,9 +151,22 @@ fn co_simulation(xml: &mut Xml, name: &str, fmi: Fmi, is_serial: bool) -> io::Re
     let offered = offered
         .iter()
         .filter(|name| is_serial || !name.contains("Serialize"));
-    element
-        .with_attributes(offered.map(|name| (*name, "true")))
-        .write_empty()?;
+    let element = element.with_attributes(offered.map(|name| (*name, "true")));
+    // FMI 3.0 has a file of its own for them.
+    if fmi == Fmi::V3 || sources.is_empty() {
+        element.write_empty()?;
+        return Ok(());
+    }
+    element.write_inner_content(|xml| {
+        xml.create_element("SourceFiles")
+            .write_inner_content(|xml| {
+                sources.iter().try_for_each(|file| {
+                    let element = xml.create_element("File").with_attribute(("name", *file));
+                    element.write_empty().map(|_| ())
+                })
+            })?;
+        Ok(())
+    })?;
     Ok(())
 }
 

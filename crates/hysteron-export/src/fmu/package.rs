@@ -2,6 +2,7 @@
 
 use super::Fmi;
 use super::binaries::binaries;
+use super::sources;
 use hysteron::{Error, Result};
 use std::io::{self, Cursor, Read, Write};
 use std::path::Path;
@@ -13,24 +14,34 @@ const LICENCE: &str = include_str!("../../LICENSE-MIT");
 const DESCRIPTION: &str = "modelDescription.xml";
 /// Files beside the binaries.
 const OTHERS: usize = 4;
-/// Files in all: of older versions with two binaries, of FMI 2.0, of FMI 3.0.
-const COUNTS: [usize; 3] = [OTHERS + 2, OTHERS + 4, OTHERS + 5];
+/// Files in all: of older versions with two binaries; of FMI 2.0 and of FMI 3.0, without sources and
+/// with them.
+const COUNTS: [usize; 5] = [
+    OTHERS + 2,
+    OTHERS + 4,
+    OTHERS + 5,
+    OTHERS + 4 + sources::COUNTS[0],
+    OTHERS + 5 + sources::COUNTS[1],
+];
 
 pub(super) struct Files {
     pub(super) description: String,
     pub(super) model_text: String,
     pub(super) model_json: String,
+    /// Names and texts of the sources, where there are any.
+    pub(super) sources: Vec<(String, String)>,
 }
 
 /// The same bytes for the same content: without times, in a fixed order.
 pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
     let binaries = binaries(fmi);
     let licence = format!(
-        "The binaries are part of hysteron, under the licence below. They hold parts of Rust's \
+        "The binaries, and the C in sources/, are part of hysteron, under the licence below. The \
+         binaries hold parts of Rust's \
          standard library (MIT or Apache-2.0, \
          https://github.com/rust-lang/rust/blob/HEAD/COPYRIGHT), that for Windows also of \
          mingw-w64 and of GCC's runtime (GCC Runtime Library Exception). The model in resources/ \
-         is its maker's.\n\n{LICENCE}"
+         and in sources/block_model.c is its maker's.\n\n{LICENCE}"
     );
     let others: [(String, &[u8]); OTHERS] = [
         (DESCRIPTION.into(), files.description.as_bytes()),
@@ -57,7 +68,9 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
             let path = format!("binaries/{platform}/{name}.{ending}");
             (path, bytes.as_ref())
         });
-        for (path, bytes) in others.into_iter().chain(binaries) {
+        let sources = files.sources.iter();
+        let sources = sources.map(|(name, text)| (format!("sources/{name}"), text.as_bytes()));
+        for (path, bytes) in others.into_iter().chain(sources).chain(binaries) {
             zip.start_file(path, options)?;
             zip.write_all(bytes)?;
         }

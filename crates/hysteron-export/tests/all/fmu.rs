@@ -40,7 +40,7 @@ fn export(model: &Model, options: &FmuOptions) -> (Fmu, Vec<u8>) {
     (made, bytes)
 }
 
-fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
+pub fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
     let count = archive.len();
     let mut entry = |n| {

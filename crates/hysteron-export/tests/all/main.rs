@@ -12,6 +12,7 @@ mod control;
 mod delay;
 mod files;
 mod fmu;
+mod fmu_sources;
 mod page;
 mod rounding;
 mod shadow;
