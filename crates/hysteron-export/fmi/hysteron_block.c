@@ -261,14 +261,25 @@ const char *block_save(const block_run *run, block_saved *saved)
                : "the state is broken";
 }
 
+/* The bytes come from outside. Numbers that no run can have are those of other bytes. */
+static int is_whole(const block_saved *saved)
+{
+    const block_inputs *inputs = &saved->inputs;
+    return saved->phase >= BLOCK_INSTANTIATED && saved->phase <= BLOCK_TERMINATED
+           && inputs->heading >= -1 && inputs->heading <= 1
+           && (inputs->start_on == 0 || inputs->start_on == 1)
+           && inputs->tolerance >= 0 && is_finite(inputs->tolerance)
+           && is_finite(saved->time) && (saved->stop >= 0 || saved->stop < 0)
+           && saved->count <= BLOCK_POINTS;
+}
+
 const char *block_restore(block_run *run, const block_saved *saved)
 {
     block_run other;
     if (memcmp(saved->token, BLOCK_TOKEN, sizeof saved->token) != 0)
         return "the state belongs to another model";
     block_reset(&other);
-    if (saved->phase < BLOCK_INSTANTIATED || saved->phase > BLOCK_TERMINATED
-        || saved->count > BLOCK_POINTS
+    if (!is_whole(saved)
         || hys_restore(&other.state, saved->points, saved->count, saved->input) != HYS_OK)
         return "the saved state is cut or changed";
     other.phase = saved->phase;

@@ -3,20 +3,24 @@
 #include "fmi3Functions.h"
 #include "hysteron_block.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef void (*plain)(void);
 
-static void tell(void *environment, plain logger, const char *why)
+static void tell(void *environment, plain logger, const char *call, const char *why)
 {
-    if (logger) ((fmi3LogMessageCallback)logger)(environment, fmi3Error, "logStatusError", why);
+    char said[200];
+    if (!logger) return;
+    snprintf(said, sizeof said, "%s: %s", call, why);
+    ((fmi3LogMessageCallback)logger)(environment, fmi3Error, "logStatusError", said);
 }
 
 static fmi3Status answer(block *c, const char *call, const char *wrong)
 {
     if (!wrong) return fmi3OK;
-    if (c && c->is_logging) tell(c->environment, (plain)c->logger, wrong);
+    if (c && c->is_logging) tell(c->environment, (plain)c->logger, call, wrong);
     return fmi3Error;
 }
 
@@ -46,7 +50,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
     block *made;
     if (!wrong && events) wrong = "this FMU has no event mode";
     made = wrong ? NULL : block_new(name, environment, (plain)log);
-    if (!made) tell(environment, (plain)log, wrong ? wrong : "there is no memory");
+    if (!made) tell(environment, (plain)log, "instantiate", wrong ? wrong : "there is no memory");
     return made;
 }
 
@@ -57,7 +61,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                                           fmi3InstanceEnvironment environment,
                                           fmi3LogMessageCallback log)
 {
-    tell(environment, (plain)log, CO_SIMULATION);
+    tell(environment, (plain)log, "instantiate", CO_SIMULATION);
     return NULL;
 }
 
@@ -66,7 +70,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback update,
     fmi3LockPreemptionCallback lock, fmi3UnlockPreemptionCallback unlock)
 {
-    tell(environment, (plain)log, CO_SIMULATION);
+    tell(environment, (plain)log, "instantiate", CO_SIMULATION);
     return NULL;
 }
 

@@ -4,6 +4,7 @@
 STATUS STATES(Get)(INSTANCE c, STATE *state)
 {
     NO_INSTANCE(c);
+    if (!state) return answer(c, "save a state", "there is no place for it");
     if (!*state) *state = malloc(sizeof(block_run));
     if (!*state) return answer(c, "save a state", "there is no memory");
     block_copy(*state, &((block *)c)->run);
@@ -21,14 +22,17 @@ STATUS STATES(Set)(INSTANCE c, STATE state)
 STATUS STATES(Free)(INSTANCE c, STATE *state)
 {
     NO_INSTANCE(c);
-    free(*state);
-    *state = NULL;
+    if (state) {
+        free(*state);
+        *state = NULL;
+    }
     return answer(c, "free a state", NULL);
 }
 
 STATUS SIZED(INSTANCE c, STATE state, size_t *size)
 {
     NO_INSTANCE(c);
+    if (!state || !size) return answer(c, "size of a state", "there is none");
     *size = sizeof(block_saved);
     return answer(c, "size of a state", NULL);
 }
@@ -38,7 +42,7 @@ STATUS SERIALISE(INSTANCE c, STATE state, BYTE bytes[], size_t size)
     block_saved saved;
     const char *wrong;
     NO_INSTANCE(c);
-    wrong = !state ? "there is no state" : block_save(state, &saved);
+    wrong = !state || !bytes ? "there is no state" : block_save(state, &saved);
     if (!wrong && size < sizeof saved) wrong = "there is no room for the bytes";
     if (!wrong) memcpy(bytes, &saved, sizeof saved);
     return answer(c, "serialise a state", wrong);
@@ -50,7 +54,8 @@ STATUS DESERIALISE(INSTANCE c, const BYTE bytes[], size_t size, STATE *state)
     block_run *run;
     const char *wrong;
     NO_INSTANCE(c);
-    if (size != sizeof saved) return answer(c, "deserialise a state", "the bytes are cut");
+    if (!bytes || !state || size != sizeof saved)
+        return answer(c, "deserialise a state", "the bytes are cut");
     memcpy(&saved, bytes, sizeof saved);
     run = malloc(sizeof *run);
     wrong = run ? block_restore(run, &saved) : "there is no memory";

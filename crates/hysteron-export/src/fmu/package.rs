@@ -36,8 +36,8 @@ pub(super) struct Files {
 pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
     let binaries = binaries(fmi);
     let licence = format!(
-        "The binaries, and the C in sources/, are part of hysteron, under the licence below. The \
-         binaries hold parts of Rust's \
+        "The binaries, and the C in sources/ if it is there, are part of hysteron, under the licence \
+         below. The binaries hold parts of Rust's \
          standard library (MIT or Apache-2.0, \
          https://github.com/rust-lang/rust/blob/HEAD/COPYRIGHT), that for Windows also of \
          mingw-w64 and of GCC's runtime (GCC Runtime Library Exception). The model in resources/ \

@@ -37,10 +37,10 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// `None` for a block that exported C is not: its sample time is fixed, and a communication step
-    /// may have any length; and a controller.
+    /// `None` for a controller, and for a model that has more than operators: the sample time of its
+    /// exported C is fixed, and a communication step may have any length.
     pub(super) fn new(model: &Model, block: Block<'_>, fmi: Fmi) -> Result<Option<Self>> {
-        let timeless = model.constants().is_none() && model.delay().is_none();
+        let bare = model.constants().is_none() && model.delay().is_none();
         let first = match block {
             Block::Forward => first(model).0,
             Block::Inverse => first_target(model)?,
@@ -54,7 +54,7 @@ impl Sources {
         };
         let texts = c_texts(model, &options, &CSampling::default());
         // A model whose numbers are too small for C has its binaries.
-        let Some((export, texts)) = texts.ok().filter(|_| timeless && !is_loaded(model)) else {
+        let Some((export, texts)) = texts.ok().filter(|_| bare && !is_loaded(model)) else {
             return Ok(None);
         };
         let names = export.files.iter().map(|file| file.display().to_string());

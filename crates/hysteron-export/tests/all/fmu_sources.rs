@@ -170,7 +170,7 @@ fn the_sources_give_the_digits_of_the_library() {
 }
 
 #[test]
-fn sources_are_there_where_no_time_passes() {
+fn models_of_operators_alone_have_sources() {
     let rng = &mut walks::rng(3);
     let plain = walks::model(rng, walks::OPERATORS[0], 4);
     let mut heated = plain.clone();

@@ -23,9 +23,6 @@ const WORTH: f64 = 0.02;
 /// until the rest is nearly found: their answer is one input.
 const SEARCHED: (usize, usize) = (1500, 14);
 
-/// A start is one of a few, and coarse levels tell it as well as fine ones.
-const LEVELS: usize = 60;
-
 /// The options with the start that the recordings ask for: off where the first samples determine
 /// nearly all operators; otherwise a rest, whose input has the least error of a fit. An unknown
 /// start has to be clearly better, by the same criterion as levels and smoothness.
@@ -33,16 +30,6 @@ const LEVELS: usize = 60;
 /// # Errors
 /// As [`crate::Fit::run`] for invalid recordings and options.
 pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<FitOptions> {
-    if options.levels > LEVELS {
-        let coarse = FitOptions {
-            levels: LEVELS,
-            ..options.clone()
-        };
-        return Ok(FitOptions {
-            levels: options.levels,
-            ..usual_start(recordings, &coarse)?
-        });
-    }
     let off = FitOptions {
         start: Start::Off,
         ..options.clone()
