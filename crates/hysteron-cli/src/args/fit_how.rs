@@ -1,7 +1,7 @@
 //! What fits of one actuator and of a fleet have in common, in the groups that the help shows.
 
 use super::common::Repair;
-use super::fit::PrepareFirst;
+use super::prepare::PrepareFirst;
 use super::value::*;
 use clap::Args;
 use hysteron::Step;
