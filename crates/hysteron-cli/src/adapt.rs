@@ -30,12 +30,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         TableWriter::create(Some(target))
     });
     let table = table.transpose()?;
-    let given = Given {
-        input: args.input.as_deref(),
-        output: args.output.as_deref(),
-        time: args.time.as_deref(),
-        load: None,
-    };
+    let given = Given::of(&args.columns, None);
     let named = Named::of(&args.data, &given, &args.repair)?;
     let columns = named.columns();
     let recordings = recording::segments(&args.data, columns, &args.repair)?;

@@ -14,7 +14,16 @@ pub(crate) struct Given<'a> {
     pub(crate) load: Option<&'a str>,
 }
 
-impl Given<'_> {
+impl<'a> Given<'a> {
+    pub(crate) fn of(columns: &'a args::Columns, load: Option<&'a str>) -> Self {
+        Self {
+            input: columns.input.as_deref(),
+            output: columns.output.as_deref(),
+            time: columns.time.as_deref(),
+            load,
+        }
+    }
+
     /// What is in a table of which these columns are known.
     pub(crate) fn preview(&self, table: &mut TableReader) -> Result<TablePreview> {
         let mut known = [None; 4];

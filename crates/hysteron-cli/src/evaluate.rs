@@ -20,12 +20,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     });
     let folder = folder.transpose()?;
     let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
-    let given = Given {
-        input: args.input.as_deref(),
-        output: args.output.as_deref(),
-        time: args.time.as_deref(),
-        load: load.as_deref(),
-    };
+    let given = Given::of(&args.columns, load.as_deref());
     let named = Named::of(&args.data, &given, &args.repair)?;
     let columns = named.columns();
     let recordings = recording::segments(&args.data, columns, &args.repair)?;

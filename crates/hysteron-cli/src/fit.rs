@@ -18,24 +18,15 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
-    let held_out = args
-        .how
-        .tests
-        .hold_out
-        .iter()
-        .filter_map(|what| match what {
-            args::HoldOut::File(file) => Some(file),
-            args::HoldOut::Part(_) => None,
-        });
+    let how = &args.how;
+    let held_out = how.tests.hold_out.iter().filter_map(|what| match what {
+        args::HoldOut::File(file) => Some(file),
+        args::HoldOut::Part(_) => None,
+    });
     let inputs = args.data.iter().chain(&args.repeat).chain(held_out);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
-    let given = Given {
-        input: args.how.columns.input.as_deref(),
-        output: args.how.columns.output.as_deref(),
-        time: args.how.columns.time.as_deref(),
-        load: args.how.columns.load.as_deref(),
-    };
-    let named = Named::of(inputs[0], &given, &args.how.repair)?;
+    let given = Given::of(&how.columns, how.quantities.load.as_deref());
+    let named = Named::of(inputs[0], &given, &how.repair)?;
     let columns = named.columns();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
@@ -101,9 +92,12 @@ fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Vec<Prepa
         .enumerate()
         .map(|(n, mut recording)| {
             let units = [
-                (&args.how.columns.input_unit, &mut recording.input_quantity),
                 (
-                    &args.how.columns.output_unit,
+                    &args.how.quantities.input_unit,
+                    &mut recording.input_quantity,
+                ),
+                (
+                    &args.how.quantities.output_unit,
                     &mut recording.output_quantity,
                 ),
             ];

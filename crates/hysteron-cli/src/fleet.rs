@@ -28,7 +28,7 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
     };
     let columns = Columns {
         time: how.columns.time.as_deref(),
-        load: how.columns.load.as_deref(),
+        load: how.quantities.load.as_deref(),
         ..Columns::new(input, output)
     };
     let hold_out = match &how.tests.hold_out[..] {
@@ -45,8 +45,8 @@ fn fit_all(args: &args::FleetFit) -> Result<()> {
         prepare: Some(prepare::steps_of(&how.prepare)),
         hold_out,
         choice: args.choice.into(),
-        input_unit: how.columns.input_unit.clone(),
-        output_unit: how.columns.output_unit.clone(),
+        input_unit: how.quantities.input_unit.clone(),
+        output_unit: how.quantities.output_unit.clone(),
         ..FleetOptions::new(columns, fit::fit_of(how)?)
     };
     let inputs: Vec<&Path> = args.data.iter().map(PathBuf::as_path).collect();

@@ -36,8 +36,8 @@ static const char *move(block_run *run)
     double signal = run->inputs.signal;
     if (!is_finite(signal)) return NOT_FINITE;
 #if BLOCK_INVERSE
-    if (hys_inverse_step(&run->state, signal, run->inputs.heading, run->inputs.tolerance, &run->result,
-                         &run->flag) != HYS_OK)
+    if (hys_inverse_step(&run->state, signal, run->inputs.heading, run->inputs.tolerance,
+                         &run->result, &run->flag) != HYS_OK)
         return NOT_FINITE;
 #else
     if (hys_step(&run->state, signal, &run->result) != HYS_OK) return NOT_FINITE;
@@ -202,7 +202,8 @@ const char *block_put_real(block_inputs *inputs, unsigned reference, double valu
     case RESULT: return OUTPUT;
 #if BLOCK_INVERSE
     case TOLERANCE:
-        if (!(value >= 0) || !is_finite(value)) return "`tolerance` has to be a finite number from 0 on";
+        if (!(value >= 0) || !is_finite(value))
+            return "`tolerance` has to be a finite number from 0 on";
         inputs->tolerance = value;
         return NULL;
 #endif
@@ -256,7 +257,8 @@ const char *block_save(const block_run *run, block_saved *saved)
     saved->stop = run->stop;
     saved->result = run->result;
     saved->inputs = run->inputs;
-    return hys_save(&run->state, saved->points, BLOCK_POINTS, &saved->count, &saved->input) == HYS_OK
+    return hys_save(&run->state, saved->points, BLOCK_POINTS, &saved->count, &saved->input)
+                   == HYS_OK
                ? NULL
                : "the state is broken";
 }

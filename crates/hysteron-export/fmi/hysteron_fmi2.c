@@ -9,10 +9,12 @@
 typedef void (*plain)(void);
 
 /* Messages have no `%` and no `#`, which would mean something in them. */
-static void tell(const char *name, void *environment, plain logger, const char *call, const char *why)
+static void tell(const char *name, void *environment, plain logger, const char *call,
+                 const char *why)
 {
     if (logger)
-        ((fmi2CallbackLogger)logger)(environment, name, fmi2Error, "logStatusError", "%s: %s", call, why);
+        ((fmi2CallbackLogger)logger)(environment, name, fmi2Error, "logStatusError", "%s: %s", call,
+                                     why);
 }
 
 static fmi2Status answer(block *c, const char *call, const char *wrong)
@@ -48,7 +50,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type kind, fmi2String guid, f
     block *made;
     if (!functions) return NULL;
     if (!wrong && kind != fmi2CoSimulation) wrong = "this FMU is for co-simulation only";
-    made = wrong ? NULL : block_new(name, functions->componentEnvironment, (plain)functions->logger);
+    made = wrong ? NULL
+                 : block_new(name, functions->componentEnvironment, (plain)functions->logger);
     if (!made)
         tell(name ? name : "", functions->componentEnvironment, (plain)functions->logger,
              "fmi2Instantiate", wrong ? wrong : "there is no memory");
@@ -127,7 +130,8 @@ VALUES(Boolean, fmi2Boolean, block_get_boolean, block_put_boolean)
 
 NOTHING(fmi2GetString, (fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2String v[]),
         n > 0)
-NOTHING(fmi2SetString, (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2String v[]),
+NOTHING(fmi2SetString,
+        (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2String v[]),
         n > 0)
 NOTHING(fmi2GetDirectionalDerivative,
         (fmi2Component c, const fmi2ValueReference u[], size_t nu, const fmi2ValueReference k[],
@@ -138,7 +142,8 @@ NOTHING(fmi2SetRealInputDerivatives,
          const fmi2Real v[]),
         1)
 NOTHING(fmi2GetRealOutputDerivatives,
-        (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer o[], fmi2Real v[]),
+        (fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer o[],
+         fmi2Real v[]),
         1)
 NOTHING(fmi2CancelStep, (fmi2Component c), 1)
 

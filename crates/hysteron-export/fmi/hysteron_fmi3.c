@@ -41,8 +41,9 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count,
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
-    fmi3Boolean events, fmi3Boolean early, const fmi3ValueReference intermediate[], size_t count,
+    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
+    fmi3Boolean logging, fmi3Boolean events, fmi3Boolean early,
+    const fmi3ValueReference intermediate[], size_t count,
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
     fmi3IntermediateUpdateCallback update)
 {
@@ -66,9 +67,10 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
-    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
-    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback update,
-    fmi3LockPreemptionCallback lock, fmi3UnlockPreemptionCallback unlock)
+    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
+    fmi3Boolean logging, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+    fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
+    fmi3UnlockPreemptionCallback unlock)
 {
     tell(environment, (plain)log, "instantiate", CO_SIMULATION);
     return NULL;
@@ -77,13 +79,14 @@ fmi3Instance fmi3InstantiateScheduledExecution(
 void fmi3FreeInstance(fmi3Instance c) { block_free(c); }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance,
-                                       fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean has_stop,
-                                       fmi3Float64 stop)
+                                       fmi3Float64 tolerance, fmi3Float64 start,
+                                       fmi3Boolean has_stop, fmi3Float64 stop)
 {
     const char *wrong;
     NO_INSTANCE(c);
     wrong = block_experiment(&((block *)c)->run, start, has_stop ? stop : BLOCK_NEVER);
-    return answer(c, "fmi3EnterInitializationMode", wrong ? wrong : block_enter(&((block *)c)->run));
+    if (!wrong) wrong = block_enter(&((block *)c)->run);
+    return answer(c, "fmi3EnterInitializationMode", wrong);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
@@ -105,7 +108,8 @@ fmi3Status fmi3Reset(fmi3Instance c)
 }
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 size, fmi3Boolean no_rollback,
-                      fmi3Boolean *event, fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last)
+                      fmi3Boolean *event, fmi3Boolean *terminate, fmi3Boolean *early,
+                      fmi3Float64 *last)
 {
     const char *wrong;
     NO_INSTANCE(c);
@@ -127,10 +131,12 @@ static const char *get_boolean(const block_run *run, unsigned reference, fmi3Boo
 
 #define REFERENCES fmi3Instance c, const fmi3ValueReference references[], size_t count
 
+static const char AS_MANY[] = "as many values as references are needed";
+
 #define VALUES(type, get, put)                                                                     \
     fmi3Status fmi3Get##type(REFERENCES, fmi3##type values[], size_t value_count)                  \
     {                                                                                              \
-        const char *wrong = count == value_count ? NULL : "as many values as references are needed"; \
+        const char *wrong = count == value_count ? NULL : AS_MANY;                                 \
         size_t n;                                                                                  \
         NO_INSTANCE(c);                                                                            \
         for (n = 0; n < count && !wrong; n++)                                                      \
@@ -139,7 +145,7 @@ static const char *get_boolean(const block_run *run, unsigned reference, fmi3Boo
     }                                                                                              \
     fmi3Status fmi3Set##type(REFERENCES, const fmi3##type values[], size_t value_count)            \
     {                                                                                              \
-        const char *wrong = count == value_count ? NULL : "as many values as references are needed"; \
+        const char *wrong = count == value_count ? NULL : AS_MANY;                                 \
         block_inputs inputs;                                                                       \
         size_t n;                                                                                  \
         NO_INSTANCE(c);                                                                            \
@@ -204,7 +210,8 @@ REFUSED(fmi3ExitConfigurationMode, fmi3Instance c)
 REFUSED(fmi3EvaluateDiscreteStates, fmi3Instance c)
 REFUSED(fmi3UpdateDiscreteStates, fmi3Instance c, fmi3Boolean *again, fmi3Boolean *terminate,
         fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *has_next, fmi3Float64 *next)
-REFUSED(fmi3GetNumberOfVariableDependencies, fmi3Instance c, fmi3ValueReference reference, size_t *n)
+REFUSED(fmi3GetNumberOfVariableDependencies, fmi3Instance c, fmi3ValueReference reference,
+        size_t *n)
 REFUSED(fmi3GetVariableDependencies, fmi3Instance c, fmi3ValueReference reference, size_t element[],
         fmi3ValueReference independents[], size_t elements[], fmi3DependencyKind kinds[], size_t n)
 REFUSED(fmi3GetDirectionalDerivative, fmi3Instance c, const fmi3ValueReference u[], size_t nu,

@@ -1,11 +1,11 @@
 //! Figures and a self-contained HTML page from the evaluation of a model on a recording, or from
 //! runs of controllers.
 //!
-//! A [`Report`] draws what is [`Shown`], each figure as SVG and (with the feature
-//! `png`, on by default) as PNG, and puts the figures on one
-//! page, `index.html`, that needs nothing beside it: those that the chapter on the MKP model has in
-//! its section 6, for any recording; residuals of several models beside each other; runs of
-//! controllers over one reference; the actuators of a fleet that are unlike the others.
+//! A [`Report`] draws what is [`Shown`], each figure as SVG and (with the feature `png`, on by
+//! default) as PNG, and puts the figures on one page, `index.html`, that needs nothing beside it:
+//! those that the chapter on the MKP model has in its section 6, for any recording; residuals of
+//! several models beside each other; runs of controllers over one reference; the actuators of a
+//! fleet that are unlike the others.
 //! [`Report::svg`] draws a single figure.
 //!
 //! The figures stay legible in grey: curves differ in line style and lightness, never in colour

@@ -103,8 +103,8 @@ impl HeldOut {
 ///
 /// # Errors
 /// - As [`Fit::run`] and [`Recording::split`].
-/// - [`Error::Fit`] for a model that depends on time if anything else is held out than rows at the
-///   end, because such a model needs every sample.
+/// - [`Error::Fit`] for a stage that depends on time, asked for or looked for, if anything else is
+///   held out than rows at the end, because such a model needs every sample.
 ///   [`crate::Dynamics::Auto`] then looks for nothing.
 pub fn fit_holding_out(
     fit: &Fit<'_>,

@@ -1,6 +1,6 @@
 //! Options of `adapt`.
 
-use super::common::{Force, Json, Repair};
+use super::common::{Columns, Force, Json, Repair};
 use super::value::*;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
 use hysteron::{ADAPT_OPTIONS, AdaptOption, AdaptOptionKind, AdaptOptions, AdaptValue, Learner};
@@ -12,17 +12,8 @@ pub(crate) struct Adapt {
     pub(crate) model: PathBuf,
     /// The recording to learn from
     pub(crate) data: PathBuf,
-    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
-    /// columns leave no doubt]
-    #[arg(long, value_name = "COL")]
-    pub(crate) input: Option<String>,
-    /// Column of the output [default: as for --input]
-    #[arg(long, value_name = "COL")]
-    pub(crate) output: Option<String>,
-    /// Column of time, in seconds or with its unit in its name, for the table and for a model that
-    /// depends on time
-    #[arg(long, value_name = "COL")]
-    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) columns: Columns,
     /// State of the operators before the first sample; `unknown`: off or on, whichever gives the
     /// smaller error
     #[arg(long, value_enum, default_value = "off")]

@@ -26,6 +26,22 @@ impl Force {
     }
 }
 
+/// Columns of a recording. What is not named, the table tells.
+#[derive(Args)]
+pub(crate) struct Columns {
+    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
+    /// columns leave no doubt]
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: Option<String>,
+    /// Column of the output [default: as for --input]
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: Option<String>,
+    /// Column of time, in seconds or with its unit in its name: for all that depends on time, a
+    /// warning if loops depend on rate, and tables and figures over time
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+}
+
 #[derive(Args)]
 pub(crate) struct Repair {
     /// Repair the table and report it: drop rows that are cut short, lack a number or come twice;

@@ -1,6 +1,6 @@
 //! What fits of one actuator and of a fleet have in common, in the groups that the help shows.
 
-use super::common::Repair;
+use super::common::{Columns, Repair};
 use super::prepare::PrepareFirst;
 use super::value::*;
 use clap::Args;
@@ -11,7 +11,9 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub(crate) struct FitHow {
     #[command(flatten)]
-    pub(crate) columns: Asked,
+    pub(crate) columns: Columns,
+    #[command(flatten)]
+    pub(crate) quantities: Quantities,
     #[command(flatten)]
     pub(crate) repair: Repair,
     #[command(flatten)]
@@ -26,23 +28,12 @@ pub(crate) struct FitHow {
     pub(crate) prepare: PrepareFirst,
 }
 
-/// Which columns, in which units.
+/// The load, and the units.
 #[derive(Args)]
-pub(crate) struct Asked {
-    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
-    /// columns leave no doubt]
-    #[arg(long, value_name = "COL")]
-    pub(crate) input: Option<String>,
-    /// Column of the output [default: as for --input]
-    #[arg(long, value_name = "COL")]
-    pub(crate) output: Option<String>,
+pub(crate) struct Quantities {
     /// Column of the load or stress: the model depends on it
     #[arg(long, value_name = "COL")]
     pub(crate) load: Option<String>,
-    /// Column of time, in seconds or with its unit in its name: for the preparation, a thermal
-    /// body, figures over time, and a warning if loops depend on rate
-    #[arg(long, value_name = "COL")]
-    pub(crate) time: Option<String>,
     /// Unit of the input [default: from a header like `temperature [degC]`]
     #[arg(long, value_name = "UNIT")]
     pub(crate) input_unit: Option<String>,

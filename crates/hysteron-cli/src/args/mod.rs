@@ -234,17 +234,8 @@ pub(crate) struct Evaluate {
     pub(crate) model: PathBuf,
     /// The recording
     pub(crate) data: PathBuf,
-    /// Column of the input [default: as the table tells: a log of `run` or `track`, or one whose
-    /// columns leave no doubt]
-    #[arg(long, value_name = "COL")]
-    pub(crate) input: Option<String>,
-    /// Column of the output [default: as for --input]
-    #[arg(long, value_name = "COL")]
-    pub(crate) output: Option<String>,
-    /// Column of time, in seconds or with its unit in its name: for the preparation, a thermal
-    /// body, and figures over time
-    #[arg(long, value_name = "COL")]
-    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) columns: Columns,
     /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: Start,

@@ -40,21 +40,23 @@ impl Sources {
     /// `None` for a controller, and for a model that has more than operators: the sample time of its
     /// exported C is fixed, and a communication step may have any length.
     pub(super) fn new(model: &Model, block: Block<'_>, fmi: Fmi) -> Result<Option<Self>> {
-        let bare = model.constants().is_none() && model.delay().is_none();
         let first = match block {
             Block::Forward => first(model).0,
             Block::Inverse => first_target(model)?,
             Block::Controller(_) => return Ok(None),
         };
+        let bare = model.constants().is_none() && model.delay().is_none();
+        if !bare || is_loaded(model) {
+            return Ok(None);
+        }
         let options = COptions {
             real: CReal::Double,
             name: Some(NAME),
             source: Path::new("model.json"),
             adaptation: false,
         };
-        let texts = c_texts(model, &options, &CSampling::default());
         // A model whose numbers are too small for C has its binaries.
-        let Some((export, texts)) = texts.ok().filter(|_| bare && !is_loaded(model)) else {
+        let Ok((export, texts)) = c_texts(model, &options, &CSampling::default()) else {
             return Ok(None);
         };
         let names = export.files.iter().map(|file| file.display().to_string());

@@ -260,8 +260,7 @@ impl<'a> Fit<'a> {
 
     /// Whether a stage that depends on time is asked for, or looked for.
     pub(crate) fn asks_for_time(&self) -> bool {
-        let dynamics = !matches!(self.options.dynamics, Dynamics::Auto | Dynamics::Off);
-        dynamics || self.options.asks_after() || self.thermal != Thermal::None
+        self.options.needs_time() || self.thermal != Thermal::None
     }
 
     /// Looks for no dynamics that were not asked for.

@@ -297,7 +297,7 @@ impl FitOptions {
 
     /// Whether the recordings have to have time.
     pub(crate) fn needs_time(&self) -> bool {
-        self.asks_after() || self.dynamics == Dynamics::Ring
+        self.asks_after() || matches!(self.dynamics, Dynamics::Ring | Dynamics::Lag)
     }
 
     /// Default number of bootstrap replicates: enough for standard errors of two digits, fewer for

@@ -10,7 +10,7 @@ use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::NormalEquations;
 use crate::model::{Sign, Solver};
 use crate::progress::Progress;
-use hysteron_core::{Plane, operators};
+use hysteron_core::{Plane, operator_count, operator_index, operators};
 
 /// With more levels than this a search begins with half of them.
 const MANY_LEVELS: usize = 120;
@@ -25,15 +25,12 @@ impl Problem<'_> {
         kept: Option<&[f64]>,
         progress: Progress<'_>,
     ) -> Result<Option<(Sign, Vec<f64>)>> {
-        let parts = self.experiment.parts.len();
-        let plane = self.regressor.plane();
-        let several = self.regressor.columns().len() != plane.operators() * parts;
         let prior = self.options.prior();
-        let is_smooth = prior.smooth.along > 0.0 || prior.smooth.across > 0.0;
         let is_fast = levels <= MANY_LEVELS || self.options.solver == Solver::Ols;
-        if is_fast || several || !is_smooth {
+        if is_fast || self.regressor.unknown_start() || prior.smooth.is_none() {
             return Ok(None);
         }
+        let plane = self.regressor.plane();
         let half = levels.div_ceil(2);
         let plane = Plane::new(plane.min(), plane.max(), half)?;
         let regressor = Regressor::new(plane, &self.options, &self.experiment)?;
@@ -48,12 +45,11 @@ impl Problem<'_> {
 /// Weights of a plane with `levels` levels, from those of one with half as many: a weight is shared
 /// by the operators that take its place.
 fn refined(x: &[f64], half: usize, levels: usize) -> Vec<f64> {
-    let place = |i: usize, j: usize| j * (j - 1) / 2 + i - 1;
     let part = |x: &[f64]| -> Vec<f64> {
-        let shared = |(i, j): (usize, usize)| x[place(i.div_ceil(2), j.div_ceil(2))] / 4.0;
+        let shared = |(i, j): (usize, usize)| x[operator_index(i.div_ceil(2), j.div_ceil(2))] / 4.0;
         operators(levels).map(shared).collect()
     };
-    x.chunks_exact(half * (half + 1) / 2)
+    x.chunks_exact(operator_count(half))
         .flat_map(part)
         .collect()
 }

@@ -5,6 +5,7 @@ use crate::identify::weights::grid_factor::Pattern;
 use crate::identify::weights::layout::Layout;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::sparse::Accumulate;
+use hysteron_core::{operator_index, operators};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::{Arc, OnceLock};
@@ -66,7 +67,7 @@ impl CornerGram {
     /// The diagonal over the weights.
     pub(crate) fn diagonal(&self) -> Vec<f64> {
         let layout = &self.layout;
-        let places: Vec<(usize, usize)> = hysteron_core::operators(layout.levels()).collect();
+        let places: Vec<(usize, usize)> = operators(layout.levels()).collect();
         let mut own = vec![None; layout.count];
         for (b, block) in layout.blocks.iter().enumerate() {
             for (column, place) in block.columns.iter().zip(&places) {
@@ -87,7 +88,7 @@ impl CornerGram {
                 };
                 let (i, j) = (i.max(k_i), j.min(k_j));
                 if a == b && i <= j {
-                    let column = layout.blocks[a].columns[j * (j - 1) / 2 + i - 1];
+                    let column = layout.blocks[a].columns[operator_index(i, j)];
                     if column != Term::NOWHERE {
                         sums[column as usize] += self.values[k];
                     }

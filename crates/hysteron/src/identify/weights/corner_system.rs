@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 const HELD: f64 = 1e3;
 
 /// Rows that are kept take at most so many bytes. Another row is computed where it is used.
-const HELD_BYTES: usize = 256 << 20;
+const KEPT_BYTES: usize = 256 << 20;
 
 /// Conjugate gradients end when the residual is this small relative to the right-hand side, or
 /// after so many steps. Rounding ends them earlier.
@@ -40,7 +40,7 @@ pub(crate) struct CornerSystem {
     pub(crate) ridge: f64,
     /// The elements of Gram matrix and prior over corners, without the free columns.
     elements: OnceLock<Vec<f64>>,
-    /// Rows that were computed, as many as [`HELD_BYTES`] has room for.
+    /// Rows that were computed, as many as [`KEPT_BYTES`] has room for.
     rows: Mutex<HashMap<usize, Arc<Vec<f64>>>>,
 }
 
@@ -121,7 +121,7 @@ impl CornerSystem {
             unit[n] = 1.0;
             let row = Arc::new(self.times(&unit));
             if let Ok(mut rows) = self.rows.lock()
-                && (rows.len() + 1) * 8 * row.len() <= HELD_BYTES
+                && (rows.len() + 1) * 8 * row.len() <= KEPT_BYTES
             {
                 rows.insert(n, row.clone());
             }

@@ -7,7 +7,7 @@
 use crate::identify::weights::column::Column;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::sparse::SparseForm;
-use hysteron_core::operators;
+use hysteron_core::{operator_index, operators};
 
 /// The columns of one function of the load that start in the same way.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl Layout {
     pub(crate) fn new(form: &SparseForm, columns: &[Column], blocks: Vec<Block>) -> Option<Self> {
         let places: Vec<(usize, usize)> = operators(form.plane().levels()).collect();
         let index = |i: usize, j: usize| {
-            (1 <= i && i <= j && j <= form.plane().levels()).then(|| j * (j - 1) / 2 + i - 1)
+            (1 <= i && i <= j && j <= form.plane().levels()).then(|| operator_index(i, j))
         };
         let mut stencils = vec![Vec::new(); columns.len()];
         for block in &blocks {

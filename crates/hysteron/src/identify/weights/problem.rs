@@ -132,6 +132,8 @@ impl<'a> Problem<'a> {
         loop {
             check_gram(self.regressor.columns().len())?;
             let (fitted, slopes) = {
+                let levels = self.regressor.plane().levels();
+                let start = self.coarse(levels, &free, kept, progress)?;
                 let equations = NormalEquations::new(
                     &self.regressor,
                     &self.experiment,
@@ -140,8 +142,6 @@ impl<'a> Problem<'a> {
                     self.options.prior(),
                     progress,
                 )?;
-                let levels = self.regressor.plane().levels();
-                let start = self.coarse(levels, &free, kept, progress)?;
                 let fitted = self.best_sign(&equations, start, progress)?;
                 let slopes = equations.slopes(&fitted.solution.x);
                 (fitted, slopes)

@@ -104,7 +104,7 @@ impl Regressor {
         }
     }
 
-    fn unknown_start(&self) -> bool {
+    pub(super) fn unknown_start(&self) -> bool {
         !self.open.is_empty()
     }
 
