@@ -17,6 +17,9 @@ const LEFT: f64 = 0.1;
 const MOVES: f64 = 0.3;
 /// Where they turn, by at least this share back.
 const TURNS: f64 = 0.1;
+/// What a model does is clear sooner: where it is so many times its error, and this share.
+const TIMES: [f64; 2] = [10.0, 4.0];
+const CLEARLY: [f64; 2] = [0.05, 0.02];
 /// There a channel stands still if it moves by at most this share of its usual range.
 const STILL: f64 = 0.02;
 
@@ -31,7 +34,7 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
     };
     let others = |recording: &Recording| from_kept(recording, &|n| !rows.contains(&n));
     let model = others(recording);
-    if is_frozen(recording, model.as_deref(), &inner) {
+    if is_frozen(recording, model.as_deref(), &inner, without) {
         return true;
     }
     let output = &recording.output;
@@ -81,20 +84,29 @@ pub(super) fn stands_still(recording: &Recording, rows: &Range<usize>, without: 
     let off = mean(apart(&recording.output[rows.clone()], &model[rows.clone()]));
     off >= SUSPECT * without
         && recording.input[rows.clone()].iter().all(known)
-        && is_frozen(recording, Some(&model), &rows)
+        && is_frozen(recording, Some(&model), &rows, without)
 }
 
 /// Whether one channel stands still in these rows while the other one turns, or while the output of
-/// the `model` of the others does. One way alone proves nothing: a wire without a drive cools.
-fn is_frozen(recording: &Recording, model: Option<&[f64]>, rows: &Range<usize>) -> bool {
+/// the `model` of the others does, which errs by `without` elsewhere. One way alone proves nothing: a
+/// wire without a drive cools.
+fn is_frozen(
+    recording: &Recording,
+    model: Option<&[f64]>,
+    rows: &Range<usize>,
+    without: f64,
+) -> bool {
     let (input, output) = (&recording.input, &recording.output);
     let is_still = |values: &[f64]| usual_span(&values[rows.clone()]) <= STILL * usual_span(values);
-    let turns = |values: &[f64]| {
+    let span = usual_span(output);
+    let turns = |values: &[f64], [far, back]: [f64; 2]| {
         let (rise, fall) = rise_and_fall(&values[rows.clone()]);
-        let span = usual_span(output);
-        rise.max(fall) >= MOVES * span && rise.min(fall) >= TURNS * span
+        rise.max(fall) >= far && rise.min(fall) >= back
     };
-    is_still(input) && turns(output) || is_still(output) && model.is_some_and(turns)
+    let far = [MOVES, TURNS].map(|share| share * span);
+    let clearly = [0, 1].map(|n| (TIMES[n] * without).max(CLEARLY[n] * span).min(far[n]));
+    is_still(input) && turns(output, far)
+        || is_still(output) && model.is_some_and(|model| turns(model, clearly))
 }
 
 /// The rising line from `x` to `y` with the least squares; `None` if it does not rise.

@@ -88,8 +88,12 @@ pub(super) fn of_the_series(
     let parts = between(cuts, len).into_iter();
     found.extend(parts.filter_map(|rows| slipped(recording, rows)));
     let channels = [&recording.input, &recording.output].into_iter();
-    let runs = channels.flat_map(|values| still(values));
-    found.extend(runs.map(|rows| Suspect::seen(vec![rows], None)));
+    found.extend(channels.map(|values| still(values)).flat_map(|runs| {
+        // A loose contact holds a series again and again.
+        let all = (runs.len() > 1).then(|| runs.clone());
+        let each = runs.into_iter().map(|rows| vec![rows]);
+        each.chain(all).map(|rows| Suspect::seen(rows, None))
+    }));
     found
 }
 
@@ -103,7 +107,10 @@ pub(super) fn of_models(recording: &Recording, cuts: &[usize], predicted: &[f64]
         .flat_map(|start| concentrated(recording, start));
     found
         .flat_map(|rows| [snapped(&rows, cuts, recording.len()), rows])
-        .map(|rows| Suspect::unseen(vec![rows]))
+        .flat_map(|rows| {
+            let exchanged = Suspect::seen(vec![rows.clone()], Some(Reading::Exchanged));
+            [exchanged, Suspect::unseen(vec![rows])]
+        })
         .collect()
 }
 

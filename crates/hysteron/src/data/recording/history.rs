@@ -7,6 +7,11 @@ use crate::recording::long_gaps;
 /// So many rows with the times and values of earlier ones are those rows, whatever follows.
 const COPIED: usize = 2;
 
+/// Where a series goes on, it steps at most so many times further than at this number of rows on
+/// either side.
+const FURTHER: f64 = 2.0;
+const NEAR: usize = 6;
+
 /// What the clock tells of rows, by their index.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct History {
@@ -74,6 +79,16 @@ impl History {
     }
 }
 
+/// Whether the series go on at row `n` as they do nearby, whatever its time is: the clock was set.
+pub(super) fn goes_on(series: &[Vec<f64>], n: usize) -> bool {
+    series.iter().enumerate().all(|(s, values)| {
+        let step = |n: usize| (values[n] - values[n - 1]).abs();
+        let near =
+            (n.saturating_sub(NEAR).max(1)..values.len().min(n + NEAR + 1)).filter(|m| *m != n);
+        s == TIME || step(n) <= FURTHER * near.map(step).fold(0.0, f64::max)
+    })
+}
+
 /// The indices at which segments begin, in rows that were kept: those that go `back`, and those
 /// after a long gap, which are added to `gaps`.
 pub(super) fn starts(series: &[Vec<f64>], back: Vec<usize>, gaps: &mut Vec<usize>) -> Vec<usize> {
@@ -124,5 +139,18 @@ mod tests {
         }
         let found = of(&[0.0, 1.0, 1.0, 1.0], &[1.0, 2.0, 3.0, 3.0]);
         assert_eq!((found.repeated, found.copies), (vec![2], vec![3]));
+    }
+
+    #[test]
+    fn series_go_on_where_a_clock_was_set() {
+        let time = [0.0, 1.0, 2.0, 3.0, 0.5, 1.5, 2.5];
+        let on = vec![1.0, 2.0, 3.5, 5.0, 6.0, 8.0, 9.0];
+        let anew = vec![1.0, 2.0, 3.5, 5.0, 1.0, 2.0, 3.5];
+        let rest = vec![4.0; 7];
+        let of = |input: &Vec<f64>, output: &Vec<f64>| {
+            goes_on(&[input.clone(), output.clone(), time.to_vec()], 4)
+        };
+        assert!(of(&on, &on) && of(&on, &rest));
+        assert!(!of(&anew, &on) && !of(&on, &anew));
     }
 }

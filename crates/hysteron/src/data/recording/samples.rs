@@ -2,7 +2,7 @@
 
 use crate::data::log::HeldBack;
 use crate::data::recording::columns::TIME;
-use crate::data::recording::history::{History, starts};
+use crate::data::recording::history::{History, goes_on, starts};
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
@@ -165,7 +165,7 @@ impl Samples {
         note(NoteKind::Ragged, &self.ragged);
         note(NoteKind::Dropped, &self.missing);
         note(NoteKind::Held, &self.held);
-        let mut back = Vec::new();
+        let (mut back, mut set) = (Vec::new(), false);
         if self.timed {
             let History {
                 kept,
@@ -192,6 +192,8 @@ impl Samples {
                 let fault = table.fault_at(Some(self.places.at(*n)), time_at, problem);
                 self.fault.get_or_insert(fault);
             }
+            set = notes.iter().all(|(kind, _)| *kind == NoteKind::Back)
+                && begins.iter().all(|&n| goes_on(&self.series, n));
             back = begins
                 .iter()
                 .map(|n| kept.partition_point(|k| k < n))
@@ -207,7 +209,9 @@ impl Samples {
             }
         }
         match self.fault.take() {
-            Some(fault) if repair == Repair::Refuse => return Err(refusal(fault, &notes)),
+            Some(fault) if repair == Repair::Refuse => {
+                return Err(refusal(fault, &notes, set));
+            }
             Some(_) if self.places.len() == 0 => {
                 let problem = "no row has a number in every column asked for";
                 return Err(table.fault_at(None, None, problem.into()));
@@ -264,8 +268,9 @@ pub(super) struct Mended {
     pub(super) back: Vec<usize>,
 }
 
-/// The error, with a list of all bad rows.
-fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
+/// The error, with a list of all bad rows. Where a clock was `set` and nothing else is wrong, the
+/// order of the rows tells what its times do not.
+fn refusal(fault: Error, notes: &[(NoteKind, Places)], set: bool) -> Error {
     let Error::Recording {
         path,
         row,
@@ -278,12 +283,18 @@ fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
     let count: u64 = notes.iter().map(|(_, places)| places.count).sum();
     let of_kind = |(kind, places): &(NoteKind, Places)| format!("{places} {}", kind.fault());
     let all: Vec<String> = notes.iter().map(of_kind).collect();
-    let (problem, words) = match count {
-        1 => (problem, "mend or remove the row, or use {}"),
-        _ => (
-            format!("{problem}; in all {}", all.join("; ")),
-            "mend or remove them, or use {}",
+    let problem = match count {
+        1 => problem,
+        _ => format!("{problem}; in all {}", all.join("; ")),
+    };
+    let (problem, words) = match (set, count) {
+        (true, _) => (
+            format!("{problem}, though the values go on: the clock was set"),
+            "leave out the time, since the order of the rows is the history, or mend it; with {} a \
+             segment begins there, whose history is not known",
         ),
+        (_, 1) => (problem, "mend or remove the row, or use {}"),
+        _ => (problem, "mend or remove them, or use {}"),
     };
     let fault = Error::Recording {
         path,
