@@ -17,7 +17,7 @@ const LEFT: f64 = 0.1;
 const MOVES: f64 = 0.3;
 /// Where they turn, by at least this share back.
 const TURNS: f64 = 0.1;
-/// What a model does is clear sooner: where it is so many times its error, and this share.
+/// Where a model errs little, so many times its error are enough, and this share.
 const TIMES: [f64; 2] = [10.0, 4.0];
 const CLEARLY: [f64; 2] = [0.05, 0.02];
 /// There a channel stands still if it moves by at most this share of its usual range.
@@ -88,8 +88,8 @@ pub(super) fn stands_still(recording: &Recording, rows: &Range<usize>, without: 
 }
 
 /// Whether one channel stands still in these rows while the other one turns, or while the output of
-/// the `model` of the others does, which errs by `without` elsewhere. One way alone proves nothing: a
-/// wire without a drive cools.
+/// the `model` of the others does. One way alone proves nothing: a wire without a drive cools. The
+/// model errs by `without` elsewhere.
 fn is_frozen(
     recording: &Recording,
     model: Option<&[f64]>,
@@ -99,14 +99,16 @@ fn is_frozen(
     let (input, output) = (&recording.input, &recording.output);
     let is_still = |values: &[f64]| usual_span(&values[rows.clone()]) <= STILL * usual_span(values);
     let span = usual_span(output);
-    let turns = |values: &[f64], [far, back]: [f64; 2]| {
-        let (rise, fall) = rise_and_fall(&values[rows.clone()]);
-        rise.max(fall) >= far && rise.min(fall) >= back
+    let far = |share, n: usize| {
+        (TIMES[n] * without)
+            .max(CLEARLY[n] * span)
+            .min(share * span)
     };
-    let far = [MOVES, TURNS].map(|share| share * span);
-    let clearly = [0, 1].map(|n| (TIMES[n] * without).max(CLEARLY[n] * span).min(far[n]));
-    is_still(input) && turns(output, far)
-        || is_still(output) && model.is_some_and(|model| turns(model, clearly))
+    let turns = |values: &[f64]| {
+        let (rise, fall) = rise_and_fall(&values[rows.clone()]);
+        rise.max(fall) >= far(MOVES, 0) && rise.min(fall) >= far(TURNS, 1)
+    };
+    is_still(input) && turns(output) || is_still(output) && model.is_some_and(turns)
 }
 
 /// The rising line from `x` to `y` with the least squares; `None` if it does not rise.

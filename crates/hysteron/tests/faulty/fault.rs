@@ -74,12 +74,12 @@ impl Fault {
             Self::Zeros => "2 to 4 dropouts to zero, 5 to 20 readings",
             Self::Held => "2 to 4 dropouts that hold the value, 5 to 20 readings",
             Self::Missing => "rows missing, 2 to 6 times 1 to 20",
-            Self::FrozenOutput => "output frozen for a sixth to a third, noise up to 0.3 %",
-            Self::FrozenInput => "input frozen for a sixth to a third, noise up to 0.3 %",
+            Self::FrozenOutput => "output frozen for a sixteenth to a third, noise up to 0.3 %",
+            Self::FrozenInput => "input frozen for a sixteenth to a third, noise up to 0.3 %",
             Self::ClockForward => "clock steps forward by a tenth",
             Self::ClockBack => "clock steps back by a tenth",
             Self::Quantised => "readings in steps of 0.5 to 1 % of the range",
-            Self::Swapped => "columns exchanged in a sixth to a third of the rows",
+            Self::Swapped => "columns exchanged in a sixteenth to a third of the rows",
             Self::Repeated => "1 to 3 blocks of 20 to 60 rows twice",
             Self::Slipped => "output moved by 5 to 50 % of its range, from a row on",
             Self::InputUnit => "a twelfth to a half of the inputs in °F",
@@ -107,7 +107,7 @@ impl Fault {
             };
             (0..count).map(span).collect::<Vec<Range<usize>>>()
         };
-        let large = len / 6..=len / 3;
+        let large = len / 16..=len / 3;
         let of_units = len / 12..=len / 2;
         match self {
             Self::Spikes | Self::Bursts => {
