@@ -30,6 +30,7 @@ __all__ = [
     "Compared",
     "Confidence",
     "ConfidenceSummary",
+    "ConstantSummary",
     "CreepTerm",
     "DeadBand",
     "Doubt",
@@ -71,6 +72,7 @@ __all__ = [
     "Smoothed",
     "Snapshot",
     "Spikes",
+    "StageSummary",
     "Stuck",
     "ThermalBody",
     "TraceTable",
@@ -613,6 +615,44 @@ class ConfidenceSummary(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ConstantSummary(_Result):
+    """A constant of a stage.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    unit : str or None
+        The unit of its numbers; None for none, and where the model does not know it.
+    numbers : tuple of float
+        Its numbers.
+    """
+
+    name: str
+    unit: str | None
+    numbers: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StageSummary(_Result):
+    """A stage that a model has.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    about : str
+        What it does, in one sentence.
+    constants : tuple of ConstantSummary
+        Its constants.
+    """
+
+    name: str
+    about: str
+    constants: tuple[ConstantSummary, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ModelSummary(_Result):
     """A model in short: `Model.summary`.
 
@@ -621,9 +661,9 @@ class ModelSummary(_Result):
     levels : int
         Levels of the plane.
     plane : tuple of float
-        Lowest and highest level, in the input's unit.
-    step : float
-        Distance between levels, in the input's unit.
+        Lowest and highest level, in the unit of the operators' input.
+    steps : tuple of float
+        Smallest and largest distance between neighbouring levels, in that unit.
     operators : int
         Number of operators.
     weights_not_zero : int
@@ -638,13 +678,15 @@ class ModelSummary(_Result):
         The input there.
     load : LoadSummary or None
         The load that the weights depend on.
+    stages : tuple of StageSummary
+        Its stages, in the order of the signal.
     confidence : ConfidenceSummary or None
         None for a model that was fitted without bootstrap.
     """
 
     levels: int
     plane: tuple[float, float]
-    step: float
+    steps: tuple[float, float]
     operators: int
     weights_not_zero: int
     weights_below_zero: int
@@ -652,6 +694,7 @@ class ModelSummary(_Result):
     widest_loop: float
     widest_loop_at: float
     load: LoadSummary | None
+    stages: tuple[StageSummary, ...]
     confidence: ConfidenceSummary | None
 
 

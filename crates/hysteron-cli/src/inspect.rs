@@ -4,10 +4,13 @@ use crate::remedy::text_of_doubt;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, TableReader, Uncertain,
-    Validation,
+    Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, StageSummary,
+    TableReader, Uncertain, Validation,
 };
 use serde_json::json;
+
+/// So many numbers of a constant are listed.
+const FEW: usize = 6;
 
 pub(crate) fn run(args: &args::Inspect) -> Result<()> {
     if args
@@ -136,11 +139,11 @@ fn model(args: &args::Inspect) -> Result<()> {
     let (off, on) = summary.output;
     let mut lines = vec![
         format!(
-            "{} levels from {} to {} (step {}), {} operators",
+            "{} levels from {} to {} ({} apart), {} operators",
             summary.levels,
             model.input.text(summary.plane.0),
             model.input.text(summary.plane.1),
-            text::number(summary.step),
+            apart(summary.steps),
             summary.operators
         ),
         format!(
@@ -206,10 +209,43 @@ fn model(args: &args::Inspect) -> Result<()> {
             text::number(load.max),
         ));
     }
+    lines.extend(summary.stages.iter().map(stage));
     if let Some(validation) = model.fit.as_ref().and_then(|fit| fit.validation.as_ref()) {
         lines.push(left_out(validation, &model));
     }
     print(&lines.join("\n"))
+}
+
+/// A distance, or from what to what it goes.
+fn apart((least, most): (f64, f64)) -> String {
+    match [least, most].map(text::number) {
+        [one, other] if one == other => one,
+        [least, most] => format!("{least} to {most}"),
+    }
+}
+
+/// A stage with its constants. Long lists are told by their ends.
+fn stage(stage: &StageSummary) -> String {
+    let rows = stage.constants.iter().map(|constant| {
+        let numbers = match &constant.numbers[..] {
+            few if few.len() <= FEW => few.iter().copied().map(text::number).collect::<Vec<_>>(),
+            [first, .., last] => vec![format!(
+                "{} numbers, {} to {}",
+                constant.numbers.len(),
+                text::number(*first),
+                text::number(*last)
+            )],
+            [..] => Vec::new(),
+        };
+        let unit = constant.unit.as_deref().unwrap_or_default();
+        let name = format!("  {}", constant.name);
+        vec![
+            name,
+            format!("{} {unit}", numbers.join(", ")).trim_end().into(),
+        ]
+    });
+    let rows: Vec<_> = rows.collect();
+    format!("{}: {}\n{}", stage.name, stage.about, text::table(&rows))
 }
 
 fn least_certain(confidence: &ConfidenceSummary, model: &Model) -> String {

@@ -5,6 +5,7 @@ use crate::identify::kept::tell_errors;
 use crate::identify::{Advice, Fit};
 use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Recording, Split, split_each};
+use crate::remedy::{Remedy, Setting};
 use crate::rivals::{Rival, RivalKind};
 use crate::series::Errors;
 use serde::Serialize;
@@ -20,6 +21,9 @@ pub struct HeldOut {
     /// Errors of simple predictors, fitted to the same samples as the model.
     pub rivals: Vec<RivalErrors>,
 }
+
+/// Stands in the record of a fit that was tested on a part of its recordings alone.
+pub(crate) const PART: &str = "hold_out_part";
 
 /// The errors of one simple predictor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -114,6 +118,17 @@ pub fn fit_holding_out(
     let recordings = recordings.as_ref();
     let others = what.recordings();
     others.iter().try_for_each(|other| other.check())?;
+    let again = |other: &&Recording| {
+        let same =
+            |fitted: &Recording| fitted.input == other.input && fitted.output == other.output;
+        recordings.iter().any(same)
+    };
+    if others.iter().any(|other| again(&other)) {
+        let words = "take another recording for {}, or a part of this one";
+        let part = Setting::any("hold-out");
+        let what = "a recording that is held out is among those fitted".to_owned();
+        return Err(Error::Fit(what).remedied(Remedy::new(words, [part])));
+    }
     if what.part().is_none() {
         let mut model = fit.run(recordings)?;
         let report = tested(&model, recordings, &others)?;
@@ -162,6 +177,11 @@ pub fn fit_holding_out(
     let is_held = |n: usize| held.get(n).copied().unwrap_or(true);
     let report = compare(&training, &all, &outputs, is_held)?;
     report.record_in(&mut model);
+    if let Some(fit) = &mut model.fit
+        && others.is_empty()
+    {
+        fit.other.insert(PART.into(), true.into());
+    }
     Ok((model, report))
 }
 

@@ -87,8 +87,8 @@ pub use identify::{
     cross_validate, excitation, left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
-    ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,
-    inspect_model, inspect_recording,
+    ConfidenceSummary, ConstantSummary, LoadSummary, ModelSummary, RecordingSummary, Series,
+    StageSummary, Uncertain, inspect_model, inspect_recording,
 };
 pub use model::{
     Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Delay, Excitation, FirstOrder,
@@ -108,8 +108,8 @@ pub use remedy::{Remedy, Setting, SettingValue};
 pub use rivals::{Rival, RivalKind};
 pub use series::noise::noise;
 pub use series::{
-    Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, range,
-    remembered, usual_tolerance,
+    Errors, Headings, NOISE, Turning, branches, fair_range, filter, headings, mean_and_deviation,
+    range, remembered, usual_tolerance,
 };
 pub use verdict::{Basis, Cause, ErrorPart, Grade, PartKind, Verdict, Worst, error_parts};
 

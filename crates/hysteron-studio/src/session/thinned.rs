@@ -7,10 +7,6 @@ use serde::Serialize;
 /// Bars of a histogram.
 const BARS: usize = 60;
 
-/// Of fewer values, none is taken for far from the others.
-const FEW: usize = 20;
-const MANY: usize = 50_000;
-
 /// The time of a sample, or its number from 1.
 pub(super) fn when(recording: &Recording, n: usize) -> f64 {
     match &recording.time {
@@ -115,26 +111,9 @@ impl Ends {
 /// The ends of a scale that a few values far from all others do not set; `None` for no values.
 pub(super) fn fair_ends(values: impl Iterator<Item = f64>) -> Option<Ends> {
     let values: Vec<f64> = values.collect();
-    let (low, high) = hysteron::range(&values);
-    if values.len() < FEW {
-        let beyond = false;
-        return (low <= high).then_some(Ends { low, high, beyond });
-    }
-    // Some of many say as well where most lie.
-    let each = values.len().div_ceil(MANY);
-    let mut values: Vec<f64> = values.iter().step_by(each).copied().collect();
-    // As many may lie beyond at each end.
-    let few = (values.len() / 200).max(1);
-    let last = values.len() - 1;
-    let mut nth = |n: usize| *values.select_nth_unstable_by(n, f64::total_cmp).1;
-    let inner = (nth(few), nth(last - few));
-    let way = inner.1 - inner.0;
-    let (is_low, is_high) = (low < inner.0 - way, high > inner.1 + way);
-    Some(Ends {
-        low: if is_low { inner.0 } else { low },
-        high: if is_high { inner.1 } else { high },
-        beyond: is_low || is_high,
-    })
+    let (low, high) = hysteron::fair_range(&values);
+    let beyond = (low, high) != hysteron::range(&values);
+    (low <= high).then_some(Ends { low, high, beyond })
 }
 
 /// How often values occur: the middles of bars, and the share of each in percent. The outermost bars

@@ -1,8 +1,10 @@
 //! Summaries of a recording and of a model, for users who want to know what a file contains.
 
 mod model;
+mod stages;
 
 pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect_model};
+pub use stages::{ConstantSummary, StageSummary};
 
 use crate::error::Result;
 use crate::identify::determined;

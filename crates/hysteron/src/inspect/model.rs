@@ -1,7 +1,9 @@
 //! Summary of a model: its plane, its weights, its widest loop and its confidence.
 
 use crate::error::Result;
+use crate::inspect::stages::{StageSummary, stages_of};
 use crate::model::{Confidence, Excitation, Model};
+use crate::series::range;
 use hysteron_core::operators;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -11,10 +13,10 @@ use std::collections::BTreeMap;
 pub struct ModelSummary {
     /// Number of levels of the plane.
     pub levels: usize,
-    /// Lowest and highest level.
+    /// Lowest and highest level, in the unit of the operators' input.
     pub plane: (f64, f64),
-    /// Distance between levels, in the input's unit.
-    pub step: f64,
+    /// Smallest and largest distance between neighbouring levels, in that unit.
+    pub steps: (f64, f64),
     /// Number of operators.
     pub operators: usize,
     /// Number of weights that are not zero.
@@ -33,6 +35,8 @@ pub struct ModelSummary {
     /// Dead time of the actuator, s; absent where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay_s: Option<f64>,
+    /// Its stages, in the order of the signal.
+    pub stages: Vec<StageSummary>,
     /// Confidence in the weights, if the fit estimated it.
     pub confidence: Option<ConfidenceSummary>,
 }
@@ -127,6 +131,11 @@ pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
     let levels = plane.levels();
     // The major branches bend only at the levels, so the widest loop is at one of them.
     let ladder: Vec<f64> = (0..=levels).map(|k| plane.level(k)).collect();
+    let inputs = match model.spacing() {
+        [] => &ladder[..],
+        corners => corners,
+    };
+    let steps: Vec<f64> = inputs.windows(2).skip(1).map(|w| w[1] - w[0]).collect();
     let operators = model.operators();
     let rising = operators.simulate(&ladder)?;
     let mut falling = vec![0.0; ladder.len()];
@@ -139,14 +148,14 @@ pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
         .unwrap_or(0);
     Ok(ModelSummary {
         levels,
-        plane: (plane.min(), plane.max()),
-        step: plane.step(),
+        plane: (inputs[1], inputs[levels]),
+        steps: range(&steps),
         operators: plane.operators(),
         weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
         weights_below_zero: model.weights().iter().filter(|mu| **mu < 0.0).count(),
         output: model.output_range(),
         widest_loop: gap(&widest),
-        widest_loop_at: ladder[widest],
+        widest_loop_at: inputs[widest],
         load: model.load.as_ref().map(|load| LoadSummary {
             name: load.quantity.name.clone(),
             unit: load.quantity.unit.clone(),
@@ -155,6 +164,7 @@ pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
             order: load.parts().len().saturating_sub(1),
         }),
         delay_s: Some(model.delay().seconds()).filter(|seconds| *seconds > 0.0),
+        stages: stages_of(model),
         confidence: model
             .fit
             .as_ref()

@@ -26,6 +26,6 @@ mod turning;
 pub use errors::Errors;
 pub(crate) use runs::Runs;
 pub(crate) use spread::range_of_all;
-pub use spread::{mean_and_deviation, range};
+pub use spread::{fair_range, mean_and_deviation, range};
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};
 pub(crate) use turning::{branch_spans, clear_branches};

@@ -13,6 +13,47 @@ pub fn range(values: &[f64]) -> (f64, f64) {
         .fold(start, |(low, high), &v| (low.min(v), high.max(v)))
 }
 
+/// Of fewer values, none is taken for far from the others.
+const FEW: usize = 20;
+/// Some of more than these say as well where most lie.
+const MANY: usize = 50_000;
+
+/// The range of finite `values` that a few far from all others do not set: up to a two-hundredth of
+/// them at each end, further from the others than these spread, where these spread at all. For an
+/// empty slice, infinity and minus infinity.
+///
+/// ```
+/// let mut read: Vec<f64> = (0..100).map(f64::from).collect();
+/// read[50] = 5000.0;
+/// assert_eq!(hysteron::fair_range(&read), (0.0, 99.0));
+/// assert_eq!(hysteron::fair_range(&read[..50]), (0.0, 49.0));
+/// ```
+#[must_use]
+pub fn fair_range(values: &[f64]) -> (f64, f64) {
+    let (low, high) = range(values);
+    if values.len() < FEW {
+        return (low, high);
+    }
+    let each = values.len().div_ceil(MANY);
+    let mut some: Vec<f64> = values.iter().step_by(each).copied().collect();
+    let few = (some.len() / 200).max(1);
+    let last = some.len() - 1;
+    let mut nth = |n: usize| *some.select_nth_unstable_by(n, f64::total_cmp).1;
+    let inner = (nth(few), nth(last - few));
+    let spread = inner.1 - inner.0;
+    if spread == 0.0 {
+        return (low, high);
+    }
+    (
+        if low < inner.0 - spread { inner.0 } else { low },
+        if high > inner.1 + spread {
+            inner.1
+        } else {
+            high
+        },
+    )
+}
+
 /// The range of several series together.
 pub(crate) fn range_of_all<'a>(series: impl IntoIterator<Item = &'a Vec<f64>>) -> (f64, f64) {
     let ranges = series.into_iter().map(|values| range(values));

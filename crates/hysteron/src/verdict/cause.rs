@@ -64,6 +64,9 @@ const SEEN: f64 = 0.01;
 /// error and band do not hold for another recording (docs/measured/coverage.md).
 const FEW: usize = 8;
 
+/// With so few, at most two loops were seen: no model of these is good for all paths.
+pub(super) const TWO_LOOPS: usize = 4;
+
 impl Cause {
     /// Their weights: what weighs less than these may go unsaid.
     pub(super) const NOISE: f64 = 0.2;
@@ -110,7 +113,7 @@ pub(super) fn of_record(
     fit: &FitSummary,
     percent: Option<f64>,
     rival: Option<&(String, f64)>,
-    held_out: bool,
+    on_others: bool,
 ) -> Vec<Cause> {
     let mut causes = Vec::new();
     if let (Some((name, rival)), Some(percent)) = (rival, percent)
@@ -123,7 +126,7 @@ pub(super) fn of_record(
     }
     if let Some(confidence) = &fit.confidence
         && confidence.branches < FEW
-        && !held_out
+        && !on_others
     {
         let branches = confidence.branches;
         causes.push(Cause::FewBranches { branches });

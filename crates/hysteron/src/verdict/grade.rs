@@ -5,8 +5,9 @@ use serde::Serialize;
 /// What a model is good for.
 ///
 /// The error counts, in percent of the range of the output, on data that the model was not fitted
-/// to. One step less where a simple predictor errs less, and `Poor` where a fifth of the inputs is
-/// outside the plane.
+/// to. One step less where a simple predictor errs less, at most `Usable` where no more than two loops
+/// were recorded, and `Poor` where a fifth of the inputs is outside the plane or the output does not
+/// move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Grade {

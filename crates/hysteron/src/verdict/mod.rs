@@ -17,7 +17,7 @@ pub use parts::{ErrorPart, PartKind, error_parts};
 use crate::error::{Place, Result};
 use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::Forward;
-use crate::hold_out::HeldOut;
+use crate::hold_out::{HeldOut, PART};
 use crate::model::{Criterion, FitSummary, Model, Start};
 use crate::recording::{Quantity, Recording, no_recordings};
 use crate::rivals::{Rival, RivalKind};
@@ -94,6 +94,9 @@ const GOOD: f64 = 1.0;
 const OF_NOISE: f64 = 1.5;
 /// Errors up to this, in percent, are usable.
 const USABLE: f64 = 5.0;
+/// A fit whose error on what it saw is so many times that on what was left out has a stage that was
+/// not there when something was left out.
+const BEYOND: f64 = 1.5;
 /// The rival of an evaluation.
 const LINE: &str = "a straight line fitted to this very recording";
 /// The inverse of so many samples is tested. More would cost as much as some fits.
@@ -119,7 +122,7 @@ impl Verdict {
             percent,
             noise: fit.confidence.as_ref().map_or(0.0, |found| found.sensor),
             inverse: None,
-            causes: cause::of_record(fit, percent, rival.as_ref(), basis == Basis::HeldOut),
+            causes: cause::of_record(fit, percent, rival.as_ref(), on_others(fit)),
             rival,
             worst: None,
             input: model.input.clone(),
@@ -226,7 +229,11 @@ impl Verdict {
 
     /// Finds the grade and puts the causes in order.
     fn judge(&mut self) {
-        let percent = self.percent.unwrap_or(0.0);
+        // Of an output that does not move, any error is too much.
+        let percent = self.percent.unwrap_or(match self.rmse > 0.0 {
+            true => f64::INFINITY,
+            false => 0.0,
+        });
         let by_error = match percent {
             _ if self.rmse <= OF_NOISE * self.noise && percent <= USABLE => Grade::Good,
             p if p <= GOOD => Grade::Good,
@@ -239,8 +246,12 @@ impl Verdict {
             .causes
             .iter()
             .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
+        let few = self.causes.iter().any(|cause| {
+            matches!(cause, Cause::FewBranches { branches } if *branches <= cause::TWO_LOOPS)
+        });
         self.grade = match (by_error, rival_wins) {
             _ if outside => Grade::Poor,
+            (Grade::Good, _) if few => Grade::Usable,
             (Grade::Good, true) => Grade::Usable,
             (Grade::Usable, true) => Grade::Poor,
             (grade, _) => grade,
@@ -283,6 +294,11 @@ fn worst(recordings: &[Recording], modelled: &[f64]) -> Option<Worst> {
     })
 }
 
+/// Whether the fit was tested on another recording, and not on a part of one that it saw.
+fn on_others(fit: &FitSummary) -> bool {
+    fit.other.contains_key("hold_out") && !fit.other.contains_key(PART)
+}
+
 /// What the fit was tested on, its error there and that of the best rival.
 fn tested(fit: &FitSummary) -> (Basis, f64, Option<f64>, Option<(String, f64)>) {
     let best =
@@ -301,7 +317,7 @@ fn tested(fit: &FitSummary) -> (Basis, f64, Option<f64>, Option<(String, f64)>) 
         );
     }
     match &fit.validation {
-        Some(found) if found.criterion == Criterion::LeftOut => {
+        Some(found) if found.criterion == Criterion::LeftOut && fit.rmse <= BEYOND * found.rmse => {
             let rivals = found.rivals.iter();
             let mut rivals = rivals.map(|rival| (rival.name.clone(), rival.nrmse_percent));
             let basis = match found.whole_branches {

@@ -224,7 +224,12 @@ fn what_cannot_be_held_out_is_refused() {
 fn rows_of_several_recordings_are_counted_through_all() {
     let (_, recording) = measured(1, 12, 0.0);
     let length = recording.len();
-    let three = vec![recording; 3];
+    let three = [0.0, 0.01, 0.02].map(|offset| {
+        let mut other = recording.clone();
+        other.output.iter_mut().for_each(|y| *y += offset);
+        other
+    });
+    let three = three.to_vec();
     let fit = Fit::new().levels(8).bootstrap(0);
     let held = |rows: std::ops::RangeInclusive<usize>| {
         let what = HoldOut::Rows(vec![rows.clone()]);
@@ -256,4 +261,11 @@ fn rows_of_several_recordings_are_counted_through_all() {
     let sum = squares(&of_part) + squares(&of_file);
     // Sums in another order differ by rounding.
     assert!((squares(&of_both) / sum - 1.0).abs() < 1e-9);
+    // What was fitted is no test.
+    let again = HoldOut::Recordings(three[..1].to_vec());
+    let refused = fit_holding_out(&fit, &three[..2], &again).unwrap_err();
+    assert!(
+        refused.to_string().contains("among those fitted"),
+        "{refused}"
+    );
 }

@@ -8,7 +8,7 @@ use crate::identify::weights::problem::Problem;
 use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::range;
+use crate::series::fair_range;
 use std::iter::repeat_n;
 
 /// Largest number of groups of branches that are left out in turn.
@@ -100,7 +100,7 @@ pub fn left_out(
             }
         }
     }
-    let (low, high) = range(&measured);
+    let (low, high) = fair_range(&measured);
     let samples = measured.len() as f64;
     let squares: f64 = measured
         .iter()

@@ -18,7 +18,7 @@ use crate::identify::weights::units::{Folds, Units};
 use crate::model::{Criterion, Score, Smooth, Solver, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::range;
+use crate::series::fair_range;
 
 /// Largest number of folds.
 const FOLDS: usize = 10;
@@ -118,7 +118,7 @@ pub(super) fn validated(
         scores,
     } = choose(seen, options, candidates, (None, near), progress)?;
     let problem = Problem::new(seen.operators, &options)?;
-    let (low, high) = range(&problem.experiment.output);
+    let (low, high) = fair_range(&problem.experiment.output);
     let rivals = rivals::left_out(seen.measured, &folds)?;
     // What the choice is worth is the error on what was left out, whatever chose.
     let rmse = match criterion {
