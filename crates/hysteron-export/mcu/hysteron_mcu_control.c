@@ -11,6 +11,10 @@
 #define RANGE ((hys_real)0.02)
 #define ROOM ((hys_real)0.5)
 #define EXPECTED ((hys_real)0.05)
+#define NOISE ((hys_real)0.01)
+#define OFF ((hys_real)0.05)
+#define FULL ((hys_real)0.1)
+#define JAMMED ((hys_real)0.4)
 #define ALIVE 10u
 #define CHANCE 3u
 
@@ -56,12 +60,35 @@ static int should_move(const hys_controller *self, hys_real expected, hys_real d
     return self->news >= ALIVE && size_of(moved) > hys_max(WAY * way, least);
 }
 
+/* Whether the output but for its noise is where it was, and the drive at a limit, though it is not
+ * wanted there and the model expects it elsewhere. */
+static int is_jammed(hys_controller *self, hys_real reading, hys_real wanted, hys_real expected,
+                     hys_real drive)
+{
+    const hys_control *control = self->control;
+    hys_real range = control->range, margin = FULL * (control->drive_max - control->drive_min);
+    int is_near = size_of(reading - self->near_reading) <= NOISE * range;
+    if (!is_finite(expected)) {
+        self->near_reading = nothing();
+        return 0;
+    }
+    if (!is_near) { /* also where there was none */
+        self->near_reading = reading;
+        self->near_expected = expected;
+    }
+    return size_of(expected - self->near_expected) > JAMMED * range
+        && size_of(wanted - reading) > OFF * range
+        && (drive < control->drive_min + margin || drive > control->drive_max - margin);
+}
+
 /* Whether a reading stands still where it has to move. */
-static int stands_still(hys_controller *self, hys_real reading)
+static int stands_still(hys_controller *self, hys_real reading, hys_real wanted)
 {
     const hys_control *control = self->control;
     hys_real drive = is_finite(self->drive) ? self->drive : control->drive_min;
     hys_real expected = is_finite(self->drive) ? self->prediction : nothing();
+    self->jammed_s = is_jammed(self, reading, wanted, expected, drive)
+        ? self->jammed_s + control->dt : ZERO;
     self->repeats = self->news > 0u && reading == self->since_reading;
     if (self->repeats) {
         if (self->still > 0u || should_move(self, expected, drive)) {
@@ -80,12 +107,13 @@ static int stands_still(hys_controller *self, hys_real reading)
 }
 
 /* The reading, or NaN where there is none: sensor.rs. */
-static hys_real sensed(hys_controller *self, hys_real reading, unsigned char *status)
+static hys_real sensed(hys_controller *self, hys_real wanted, hys_real reading,
+                       unsigned char *status)
 {
     const hys_control *control = self->control;
     int repeated;
     self->silent = is_finite(reading) ? ZERO : self->silent + control->dt;
-    if (self->followed != NULL && is_finite(reading) && stands_still(self, reading)) {
+    if (self->followed != NULL && is_finite(reading) && stands_still(self, reading, wanted)) {
         *status |= HYS_STUCK;
         reading = nothing();
     }
@@ -279,8 +307,8 @@ int hys_controller_start(hys_controller *self, const hys_control *control, hys_s
     self->fade = self->integral = self->slope = self->correction = ZERO;
     self->measured = self->last = nothing();
     self->low = self->high = self->gap = self->silent = ZERO;
-    self->since_reading = self->since_drive = self->still_s = ZERO;
-    self->since_expected = nothing();
+    self->since_reading = self->since_drive = self->still_s = self->jammed_s = ZERO;
+    self->since_expected = self->near_reading = self->near_expected = nothing();
     self->still = self->news = 0u;
     self->branch = HYS_HOLD;
     self->left = self->aimed = self->begun = self->held_low = self->held_high = 0u;
@@ -299,7 +327,7 @@ int hys_controller_go_on_from(hys_controller *self, hys_real drive)
     self->from = self->drive = drive;
     if (self->is_safe) {
         self->is_safe = 0u;
-        self->silent = self->still_s = ZERO;
+        self->silent = self->still_s = self->jammed_s = ZERO;
         self->still = 0u;
     }
     return HYS_OK;
@@ -323,7 +351,7 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
         return HYS_VALUE;
     }
     self->acting = arrives(self, self->drive);
-    measured = sensed(self, reading, &status);
+    measured = sensed(self, reference, reading, &status);
     if (self->followed != NULL && is_finite(self->acting)) {
         code = control->model->step(self->followed, self->acting, &self->prediction);
     }
@@ -345,8 +373,9 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
     }
     slack = control->dt * (hys_real)0.01;
     if ((control->lost_s > ZERO && self->silent >= control->lost_s - slack)
-        || (control->stuck_s > ZERO && self->still >= CHANCE
-            && self->still_s >= control->stuck_s - slack)) {
+        || (control->stuck_s > ZERO
+            && (self->still >= CHANCE ? self->still_s : self->jammed_s)
+                >= control->stuck_s - slack)) {
         self->is_safe = 1u;
     }
     if (self->is_safe) {

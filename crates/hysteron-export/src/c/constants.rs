@@ -174,7 +174,7 @@ impl<T: Number> Constants<T> {
             mixed,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
             controller: late.map(|late| {
-                let numbers = (18 + late) * T::BYTES;
+                let numbers = (21 + late) * T::BYTES;
                 aligned(5 * word) + numbers + aligned(2 * word + 8)
             }),
             adaptation: learns.map(|(_, numbers)| adaptive + numbers * T::BYTES),
