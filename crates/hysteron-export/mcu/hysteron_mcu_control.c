@@ -87,22 +87,19 @@ static int stands_still(hys_controller *self, hys_real reading, hys_real wanted)
     const hys_control *control = self->control;
     hys_real drive = is_finite(self->drive) ? self->drive : control->drive_min;
     hys_real expected = is_finite(self->drive) ? self->prediction : nothing();
-    self->jammed_s = is_jammed(self, reading, wanted, expected, drive)
-        ? self->jammed_s + control->dt : ZERO;
+    int jammed = is_jammed(self, reading, wanted, expected, drive), counts = 0;
     self->repeats = self->news > 0u && reading == self->since_reading;
     if (self->repeats) {
-        if (self->still > 0u || should_move(self, expected, drive)) {
-            self->still += self->still < CHANCE;
-            self->still_s += control->dt;
-        }
+        counts = self->still > 0u || should_move(self, expected, drive);
+        self->still = (unsigned char)(self->still + (counts && self->still < CHANCE));
     } else {
         self->since_reading = reading;
         self->since_expected = expected;
         self->since_drive = drive;
         self->still = 0u;
-        self->still_s = ZERO;
-        self->news += self->news < ALIVE;
+        self->news = (unsigned char)(self->news + (self->news < ALIVE));
     }
+    self->still_s = counts || jammed ? self->still_s + control->dt : ZERO;
     return self->still >= CHANCE;
 }
 
@@ -307,7 +304,7 @@ int hys_controller_start(hys_controller *self, const hys_control *control, hys_s
     self->fade = self->integral = self->slope = self->correction = ZERO;
     self->measured = self->last = nothing();
     self->low = self->high = self->gap = self->silent = ZERO;
-    self->since_reading = self->since_drive = self->still_s = self->jammed_s = ZERO;
+    self->since_reading = self->since_drive = self->still_s = ZERO;
     self->since_expected = self->near_reading = self->near_expected = nothing();
     self->still = self->news = 0u;
     self->branch = HYS_HOLD;
@@ -327,7 +324,7 @@ int hys_controller_go_on_from(hys_controller *self, hys_real drive)
     self->from = self->drive = drive;
     if (self->is_safe) {
         self->is_safe = 0u;
-        self->silent = self->still_s = self->jammed_s = ZERO;
+        self->silent = self->still_s = ZERO;
         self->still = 0u;
     }
     return HYS_OK;
@@ -373,9 +370,8 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
     }
     slack = control->dt * (hys_real)0.01;
     if ((control->lost_s > ZERO && self->silent >= control->lost_s - slack)
-        || (control->stuck_s > ZERO
-            && (self->still >= CHANCE ? self->still_s : self->jammed_s)
-                >= control->stuck_s - slack)) {
+        || (control->stuck_s > ZERO && (self->still == 0u || self->still >= CHANCE)
+            && self->still_s >= control->stuck_s - slack)) {
         self->is_safe = 1u;
     }
     if (self->is_safe) {

@@ -66,10 +66,11 @@ typedef struct {
     hys_real low, high;                /* of the reference, since it turned */
     hys_real last, gap, silent;        /* reading; s without one */
     hys_real since_reading, since_expected, since_drive, still_s; /* since it stands still */
-    hys_real near_reading, near_expected, jammed_s; /* the same but for its noise */
-    unsigned still, news;
+    hys_real near_reading, near_expected; /* the same but for its noise */
+    unsigned char still, news;
     signed char branch;                /* of the reference */
-    unsigned char left, aimed, begun, held_low, held_high, repeats, is_safe;
+    unsigned char left;
+    unsigned aimed : 1, begun : 1, held_low : 1, held_high : 1, repeats : 1, is_safe : 1;
 } hys_controller;
 
 /* Flags of a sample. */

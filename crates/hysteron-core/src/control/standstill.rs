@@ -46,8 +46,8 @@ pub struct Standstill {
     since: Option<(f64, Cause)>,
     /// The first reading that all since were near to, and what the model expected then.
     near: Option<(f64, f64)>,
-    jammed_s: f64,
-    /// For how many samples and s the output should have moved.
+    /// For how many samples the output stood still to the last bit where it should have moved, and
+    /// for how long it did so or was jammed, s.
     still: (u32, f64),
     /// Whether the last reading was the one before it.
     repeats: bool,
@@ -59,28 +59,20 @@ impl Standstill {
     /// How long the output has stood still to the last bit where it should have moved, s; `None`
     /// where it is not stuck. `dt` is the time since the last sample.
     pub fn push(&mut self, reading: f64, cause: Cause, dt: f64) -> Option<f64> {
-        self.jammed_s = match self.is_jammed(reading, cause) {
-            true => self.jammed_s + dt,
-            false => 0.0,
-        };
+        let jammed = self.is_jammed(reading, cause);
         self.repeats = self.since.is_some_and(|(last, _)| last == reading);
-        match self.since {
-            Some((_, before)) if self.repeats => {
-                let (count, time) = self.still;
-                if count > 0 || self.should_move(before, cause) {
-                    self.still = (count.saturating_add(1), time + dt);
-                }
-            }
-            _ => {
-                (self.since, self.still) = (Some((reading, cause)), (0, 0.0));
-                self.new = self.new.saturating_add(1);
-            }
-        }
-        self.frozen_s()
-    }
-
-    fn frozen_s(&self) -> Option<f64> {
         let (count, time) = self.still;
+        let frozen = match self.since {
+            Some((_, before)) if self.repeats => count > 0 || self.should_move(before, cause),
+            _ => {
+                self.since = Some((reading, cause));
+                self.new = self.new.saturating_add(1);
+                false
+            }
+        };
+        let count = if frozen { count.saturating_add(1) } else { 0 };
+        let time = if frozen || jammed { time + dt } else { 0.0 };
+        self.still = (count, time);
         (count >= CHANCE).then_some(time)
     }
 
@@ -89,13 +81,13 @@ impl Standstill {
     /// is jammed, or later than its model.
     #[must_use]
     pub fn stuck_s(&self) -> Option<f64> {
-        let jammed_s = Some(self.jammed_s).filter(|time| *time > 0.0);
-        self.frozen_s().or(jammed_s)
+        let (count, time) = self.still;
+        (count >= CHANCE || (count == 0 && time > 0.0)).then_some(time)
     }
 
     /// Begins anew to notice.
     pub fn forgive(&mut self) {
-        (self.still, self.jammed_s) = ((0, 0.0), 0.0);
+        self.still = (0, 0.0);
     }
 
     /// Where the drive may go while the output stands still and no model says whether it should: so
