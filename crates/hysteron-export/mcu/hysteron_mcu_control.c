@@ -12,7 +12,7 @@
 #define ROOM ((hys_real)0.5)
 #define EXPECTED ((hys_real)0.05)
 #define NOISE ((hys_real)0.01)
-#define OFF ((hys_real)0.05)
+#define ASIDE ((hys_real)0.05)
 #define FULL ((hys_real)0.1)
 #define JAMMED ((hys_real)0.4)
 #define ALIVE 10u
@@ -77,7 +77,7 @@ static int is_jammed(hys_controller *self, hys_real reading, hys_real wanted, hy
         self->near_expected = expected;
     }
     return size_of(expected - self->near_expected) > JAMMED * range
-        && size_of(wanted - reading) > OFF * range
+        && size_of(wanted - reading) > ASIDE * range
         && (drive < control->drive_min + margin || drive > control->drive_max - margin);
 }
 

@@ -12,7 +12,7 @@ const EXPECTED: f64 = 0.05;
 /// With a model and noise: the readings stay within this share of the range of its outputs,
 const NOISE: f64 = 0.01;
 /// they are off what is wanted by this share,
-const OFF: f64 = 0.05;
+const ASIDE: f64 = 0.05;
 /// the drive is at a limit, but for this share of its range,
 const FULL: f64 = 0.1;
 /// and the model expects a change by this share. All four together are a plant that is jammed, or a
@@ -121,7 +121,7 @@ impl Standstill {
         let (low, high) = cause.drives;
         let margin = FULL * (high - low);
         (expected - then).abs() > JAMMED * range
-            && (cause.wanted - reading).abs() > OFF * range
+            && (cause.wanted - reading).abs() > ASIDE * range
             && (cause.drive < low + margin || cause.drive > high - margin)
     }
 
