@@ -4,8 +4,9 @@
  * delay, unless --cut has cut the line.
  *
  *   board ELF [--pty] [--mega] [--wire] [--seconds S] [--trace FILE] [--stack] [--strength X]
- *             [--cut S] [--hang S] [--noise P] [--loose S] [--restart S]
+ *             [--cut S] [--hang S] [--noise P] [--loose S] [--jam S] [--restart S]
  *
+ * --jam: the slider stands still from then on, and its ADC goes on with its noise.
  * --wire, --strength: another actuator (plant.h). The trace has a row for each millisecond, or for ten with
  * --strength: time, wanted and actual position, drive. --stack prints the most bytes that the stack
  * ever took. */
@@ -35,7 +36,7 @@ static const char *chip = "atmega328p";
 static int in = 0, out, has_host, waits, at_start = 1, is_sample;
 static int is_mega;
 static double strength; /* of another actuator; 0 for the spring */
-static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, restart = 1e9, noise;
+static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, jam = 1e9, restart = 1e9, noise;
 static unsigned char queue[4096];
 static size_t from, to;
 static plant spring;
@@ -102,11 +103,13 @@ static uint16_t held;
 
 /* Each millisecond. */
 static avr_cycle_count_t tick(avr_t *avr, avr_cycle_count_t when, void *param) {
-    double drive = duty(avr), wanted = reference(&spring, now);
+    double drive = duty(avr), wanted = reference(&spring, now), before = spring.mm;
     int n;
     (void)param;
     now += 1e-3;
     plant_step(&spring, drive, 1e-3);
+    if (now >= jam)
+        spring.mm = before;
     /* An ADC has noise of a step (5 mV). A sensor without any would look as if it stood still. */
     avr_raise_irq(adc + ADC_IRQ_ADC0, now < loose ? 500 * spring.mm + 10 * (chance() - 0.5) : 0);
     avr_raise_irq(adc + ADC_IRQ_ADC1, 500 * wanted + 10 * (chance() - 0.5));
@@ -178,6 +181,7 @@ int main(int count, char **args) {
         if (!strcmp(option, "--cut")) cut = atof(value);
         if (!strcmp(option, "--hang")) hang = atof(value);
         if (!strcmp(option, "--loose")) loose = atof(value);
+        if (!strcmp(option, "--jam")) jam = atof(value);
         if (!strcmp(option, "--restart")) restart = atof(value);
         if (!strcmp(option, "--strength")) strength = atof(value);
         if (!strcmp(option, "--noise")) noise = atof(value);

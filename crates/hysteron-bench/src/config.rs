@@ -162,7 +162,8 @@ pub struct Safety {
     /// So long without a valid reading, s. Default: 0.5 s, and at least five samples.
     pub lost_s: Option<f64>,
     /// So long without any change where the model expects one, s. Default 1, and at least five
-    /// samples.
+    /// samples. In mode `record`: so long without more than noise, and at least while the profile
+    /// goes there and back, s. Default 60.
     pub stuck_s: Option<f64>,
 }
 

@@ -71,7 +71,13 @@ pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
     lines.push(format!(
         "safety    lost after {}; stuck after {}",
         or(seconds(config.safety.lost_s), "0.5 s, at least 5 samples"),
-        or(seconds(config.safety.stuck_s), "1 s, at least 5 samples"),
+        or(
+            seconds(config.safety.stuck_s),
+            match config.mode {
+                Mode::Record => "60 s of noise",
+                _ => "1 s, at least 5 samples",
+            }
+        ),
     ));
     for (what, message) in [
         ("who", ToDevice::Who),

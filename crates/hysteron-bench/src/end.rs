@@ -1,5 +1,6 @@
 //! The ways that a run can end.
 
+use crate::sweep::Unmoved;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,6 +16,8 @@ pub enum End {
     Lost(f64),
     /// The output stood still where it had to move, s.
     Stuck(f64),
+    /// The output did not move while a profile went there and back.
+    Unmoved(Unmoved),
     /// The output was beyond its limits.
     Limit(f64),
     /// The device said that it has ended, and why.
@@ -35,7 +38,7 @@ impl End {
             Self::Done => 0,
             Self::Failed(_) => 1,
             Self::Lost(_) => 3,
-            Self::Stuck(_) => 4,
+            Self::Stuck(_) | Self::Unmoved(_) => 4,
             Self::Limit(_) => 5,
             Self::Device(_) => 6,
             Self::Closed(_) => 7,
@@ -51,7 +54,7 @@ impl End {
             Self::Done => "done",
             Self::Stopped => "stopped",
             Self::Lost(_) => "lost",
-            Self::Stuck(_) => "stuck",
+            Self::Stuck(_) | Self::Unmoved(_) => "stuck",
             Self::Limit(_) => "limit",
             Self::Device(_) => "device",
             Self::Closed(_) => "closed",
@@ -71,6 +74,19 @@ impl fmt::Display for End {
             Self::Stuck(time) => write!(
                 f,
                 "the output stood still for {time:.3} s where it had to move (safety.stuck_s)"
+            ),
+            Self::Unmoved(found) => write!(
+                f,
+                "the output moved by no more than its noise, {} to {}, while the drive went through \
+                 {} to {} and back, from sample {} to {}: look whether the slider moves and the \
+                 sensor is connected; an actuator that is slower than the profile needs a slower \
+                 one, or a longer safety.stuck_s",
+                found.outputs.0,
+                found.outputs.1,
+                found.drives.0,
+                found.drives.1,
+                found.samples.0,
+                found.samples.1
             ),
             Self::Limit(output) => {
                 write!(f, "the output was {output}, beyond limits.output")

@@ -30,6 +30,7 @@ pub mod protocol;
 mod row;
 mod session;
 mod summary;
+mod sweep;
 mod tune;
 
 pub use config::{
@@ -41,4 +42,5 @@ pub use end::{End, Stop};
 pub use error::{Error, Result};
 pub use session::run;
 pub use summary::{Options, Seen, Summary};
+pub use sweep::Unmoved;
 pub use tune::{Tuned, tune};

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::learner::Beside;
 use crate::play::{Course, refuse_empty};
 use crate::protocol::Header;
+use crate::sweep::{self, Sweep};
 use crate::tune::{Tuned, tune};
 use crate::{device, error};
 use hysteron::control::{Compensator, Controller, Scheme};
@@ -66,6 +67,8 @@ pub(crate) struct Plan {
     pub(crate) stuck_s: f64,
     pub(crate) end_s: Option<f64>,
     pub(crate) course: Option<Course>,
+    /// Watches what a profile moves.
+    pub(crate) sweep: Option<Sweep>,
     /// Samples of the reference that the controller is told ahead.
     pub(crate) ahead: usize,
     pub(crate) controller: Controller,
@@ -116,14 +119,22 @@ impl Plan {
             controller.due().max(preview).min(MOST_AHEAD)
         });
         let course_end = sources.course.as_ref().map(Course::end_s);
+        let stuck_s = config.safety.stuck_s;
+        let profile = sources.course.as_ref();
+        let sweep = profile
+            .filter(|_| config.mode == Mode::Record)
+            .and_then(|profile| {
+                Sweep::new(profile.range(), drives, stuck_s.unwrap_or(sweep::LEAST_S))
+            });
         let mut plan = Self {
             mode: config.mode,
             drives,
             outputs: config.limits.output,
             lost_s,
-            stuck_s: config.safety.stuck_s.unwrap_or(usual_stuck_s),
+            stuck_s: stuck_s.unwrap_or(usual_stuck_s),
             end_s: config.duration_s.or(course_end),
             course: sources.course,
+            sweep,
             ahead,
             controller,
             beside: made.beside,

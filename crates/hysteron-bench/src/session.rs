@@ -302,7 +302,10 @@ impl Session {
             .map_or(f64::NAN, |n| sample.readings[n]);
         let answer = self.answer(dt, elapsed, output);
         let (mut end, answer) = match answer {
-            Ok(answer) => (self.ends(elapsed, sample.time, output, &answer), answer),
+            Ok(answer) => {
+                let done = self.unmoved(at.number, dt, output).or(self.done(elapsed));
+                (self.ends(sample.time, output, &answer).or(done), answer)
+            }
             Err(error) => (Some(End::Failed(error.to_string())), Answer::nothing()),
         };
         let (drive, word) = match &end {
@@ -441,8 +444,21 @@ impl Session {
         })
     }
 
-    /// How the run ends with a sample.
-    fn ends(&mut self, elapsed: f64, time: f64, output: f64, answer: &Answer) -> Option<End> {
+    /// Whether a profile moves nothing.
+    fn unmoved(&mut self, number: u64, dt: f64, output: f64) -> Option<End> {
+        let sweep = self.plan.sweep.as_mut()?;
+        sweep.push(number, dt, self.drive, output).map(End::Unmoved)
+    }
+
+    /// Whether all was run.
+    fn done(&self, elapsed: f64) -> Option<End> {
+        let tolerance = 0.01 * self.plan.header.dt;
+        let is_over = |end: f64| elapsed >= end - tolerance;
+        self.plan.end_s.is_some_and(is_over).then_some(End::Done)
+    }
+
+    /// How the run ends with a sample before all was run.
+    fn ends(&mut self, time: f64, output: f64, answer: &Answer) -> Option<End> {
         let plan = &self.plan;
         let tolerance = 0.01 * plan.header.dt;
         if output.is_finite() {
@@ -462,12 +478,9 @@ impl Session {
             Some(End::Limit(output))
         } else if time - self.valid_s >= plan.lost_s - tolerance {
             Some(End::Lost(time - self.valid_s))
-        } else if let Some(time) = stuck.filter(|time| *time >= plan.stuck_s - tolerance) {
-            Some(End::Stuck(time))
-        } else if plan.end_s.is_some_and(|end| elapsed >= end - tolerance) {
-            Some(End::Done)
         } else {
-            None
+            let is_over = |time: &f64| *time >= plan.stuck_s - tolerance;
+            stuck.filter(is_over).map(End::Stuck)
         }
     }
 

@@ -31,7 +31,7 @@ fn c(args: &args::ExportC) -> Result<()> {
             dt: args.dt,
             drive: args.drive_range,
         },
-        Some(_) => sampling(&model, args.dt, args.drive_range),
+        Some(_) => sampling(&model, args.dt),
     };
     let options = COptions {
         real: args.real.into(),
@@ -126,7 +126,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let sampling = sampling(&model, Some(args.dt), args.drive_range);
+    let sampling = sampling(&model, Some(args.dt));
     let made = hysteron_export::arduino(&model, target, &options, &sampling, &control)?;
     let (export, memory) = (made.export, made.memory);
     if args.json.json {
@@ -204,11 +204,12 @@ fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
     hysteron::Error::Export(what).remedied(remedy)
 }
 
-/// The sample time of a model that depends on time, and the limits of one with stages.
-fn sampling(model: &Model, dt: Option<f64>, drive: Option<(f64, f64)>) -> CSampling {
+/// The sample time of a model that depends on time. In a loop the inverse keeps to the drives that
+/// were fitted, as in `run`: at the loop's own limit it would leave the integral no room.
+fn sampling(model: &Model, dt: Option<f64>) -> CSampling {
     CSampling {
         dt: dt.filter(|_| model.is_timed()),
-        drive: drive.filter(|_| !model.is_plain()),
+        drive: None,
     }
 }
 

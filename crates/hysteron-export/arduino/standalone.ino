@@ -23,7 +23,8 @@ hys_controller controller;
 hys_real under_way[@NAME@_LATE + 1];
 
 const unsigned long DT_US = @name@_control.dt * 1e6 + 0.5;
-unsigned long due, number;
+unsigned long due;
+uint8_t unsaid;        // samples since the last line
 unsigned int overruns; // samples that came too late
 float drive, heat;
 bool is_off = false;
@@ -90,7 +91,8 @@ void loop() {
 @shadow_step@
   apply(is_off ? 0 : action.drive);
 
-  if (++number % 5 == 0) {
+  if (++unsaid == 5) {
+    unsaid = 0;
     Serial.print(F("wanted:")), Serial.print(wanted, 3);
     Serial.print(F(" position:")), Serial.print(mm, 3);
     Serial.print(F(" drive:")), Serial.print(drive, 3);

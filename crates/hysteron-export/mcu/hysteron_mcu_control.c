@@ -11,6 +11,10 @@
 #define RANGE ((hys_real)0.02)
 #define ROOM ((hys_real)0.5)
 #define EXPECTED ((hys_real)0.05)
+#define NOISE ((hys_real)0.01)
+#define ASIDE ((hys_real)0.05)
+#define FULL ((hys_real)0.1)
+#define JAMMED ((hys_real)0.4)
 #define ALIVE 10u
 #define CHANCE 3u
 
@@ -56,36 +60,57 @@ static int should_move(const hys_controller *self, hys_real expected, hys_real d
     return self->news >= ALIVE && size_of(moved) > hys_max(WAY * way, least);
 }
 
+/* Whether the output but for its noise is where it was, and the drive at a limit, though it is not
+ * wanted there and the model expects it elsewhere. */
+static int is_jammed(hys_controller *self, hys_real reading, hys_real wanted, hys_real expected,
+                     hys_real drive)
+{
+    const hys_control *control = self->control;
+    hys_real range = control->range, margin = FULL * (control->drive_max - control->drive_min);
+    int is_near = size_of(reading - self->near_reading) <= NOISE * range;
+    if (!is_finite(expected)) {
+        self->near_reading = nothing();
+        return 0;
+    }
+    if (!is_near) { /* also where there was none */
+        self->near_reading = reading;
+        self->near_expected = expected;
+    }
+    return size_of(expected - self->near_expected) > JAMMED * range
+        && size_of(wanted - reading) > ASIDE * range
+        && (drive < control->drive_min + margin || drive > control->drive_max - margin);
+}
+
 /* Whether a reading stands still where it has to move. */
-static int stands_still(hys_controller *self, hys_real reading)
+static int stands_still(hys_controller *self, hys_real reading, hys_real wanted)
 {
     const hys_control *control = self->control;
     hys_real drive = is_finite(self->drive) ? self->drive : control->drive_min;
     hys_real expected = is_finite(self->drive) ? self->prediction : nothing();
+    int jammed = is_jammed(self, reading, wanted, expected, drive), counts = 0;
     self->repeats = self->news > 0u && reading == self->since_reading;
     if (self->repeats) {
-        if (self->still > 0u || should_move(self, expected, drive)) {
-            self->still += self->still < CHANCE;
-            self->still_s += control->dt;
-        }
+        counts = self->still > 0u || should_move(self, expected, drive);
+        self->still = (unsigned char)(self->still + (counts && self->still < CHANCE));
     } else {
         self->since_reading = reading;
         self->since_expected = expected;
         self->since_drive = drive;
         self->still = 0u;
-        self->still_s = ZERO;
-        self->news += self->news < ALIVE;
+        self->news = (unsigned char)(self->news + (self->news < ALIVE));
     }
+    self->still_s = counts || jammed ? self->still_s + control->dt : ZERO;
     return self->still >= CHANCE;
 }
 
 /* The reading, or NaN where there is none: sensor.rs. */
-static hys_real sensed(hys_controller *self, hys_real reading, unsigned char *status)
+static hys_real sensed(hys_controller *self, hys_real wanted, hys_real reading,
+                       unsigned char *status)
 {
     const hys_control *control = self->control;
     int repeated;
     self->silent = is_finite(reading) ? ZERO : self->silent + control->dt;
-    if (self->followed != NULL && is_finite(reading) && stands_still(self, reading)) {
+    if (self->followed != NULL && is_finite(reading) && stands_still(self, reading, wanted)) {
         *status |= HYS_STUCK;
         reading = nothing();
     }
@@ -280,7 +305,7 @@ int hys_controller_start(hys_controller *self, const hys_control *control, hys_s
     self->measured = self->last = nothing();
     self->low = self->high = self->gap = self->silent = ZERO;
     self->since_reading = self->since_drive = self->still_s = ZERO;
-    self->since_expected = nothing();
+    self->since_expected = self->near_reading = self->near_expected = nothing();
     self->still = self->news = 0u;
     self->branch = HYS_HOLD;
     self->left = self->aimed = self->begun = self->held_low = self->held_high = 0u;
@@ -323,7 +348,7 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
         return HYS_VALUE;
     }
     self->acting = arrives(self, self->drive);
-    measured = sensed(self, reading, &status);
+    measured = sensed(self, reference, reading, &status);
     if (self->followed != NULL && is_finite(self->acting)) {
         code = control->model->step(self->followed, self->acting, &self->prediction);
     }
@@ -345,7 +370,7 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
     }
     slack = control->dt * (hys_real)0.01;
     if ((control->lost_s > ZERO && self->silent >= control->lost_s - slack)
-        || (control->stuck_s > ZERO && self->still >= CHANCE
+        || (control->stuck_s > ZERO && (self->still == 0u || self->still >= CHANCE)
             && self->still_s >= control->stuck_s - slack)) {
         self->is_safe = 1u;
     }

@@ -9,7 +9,8 @@
  *   - hys_controller_go_on_from takes over from another drive without a bump.
  *   - A missing reading is NaN. The feedback is then held, and the inverse goes on.
  *   - A reading that stands still to the last bit where it has to move is taken as missing.
- *   - After a time without a reading, or with one that stands still, the drive is the safe one.
+ *   - After a time without a reading, or with one that stands still, the drive is the safe one; so it
+ *     is where the reading stands still but for its noise while the drive is at a limit.
  *
  * The results have the bits of the library's controller with a fixed model, without filter, gate
  * and inner loop, in the same number type. What hysteron_mcu.h says of compilers and
@@ -65,9 +66,11 @@ typedef struct {
     hys_real low, high;                /* of the reference, since it turned */
     hys_real last, gap, silent;        /* reading; s without one */
     hys_real since_reading, since_expected, since_drive, still_s; /* since it stands still */
-    unsigned still, news;
+    hys_real near_reading, near_expected; /* the same but for its noise */
+    unsigned char still, news;
     signed char branch;                /* of the reference */
-    unsigned char left, aimed, begun, held_low, held_high, repeats, is_safe;
+    unsigned char left;
+    unsigned aimed : 1, begun : 1, held_low : 1, held_high : 1, repeats : 1, is_safe : 1;
 } hys_controller;
 
 /* Flags of a sample. */

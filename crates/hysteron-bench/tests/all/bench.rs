@@ -24,18 +24,21 @@ pub struct Ran {
 /// A folder with a profile and a reference.
 pub fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let table = |name: &str, column: &str, at: fn(f64) -> f64| {
-        let rows = (0..=80).map(|n| 0.05 * f64::from(n));
+    let table = |name: &str, column: &str, last: i32, at: fn(f64) -> f64| {
+        let rows = (0..=last).map(|n| 0.05 * f64::from(n));
         let rows = rows
             .map(|time| format!("{time},{}\n", at(time)))
             .collect::<String>();
         std::fs::write(folder.path().join(name), format!("time,{column}\n{rows}")).unwrap();
     };
-    table("reference.csv", "reference", |time| {
+    table("reference.csv", "reference", 80, |time| {
         6.0 - 5.0 * (2.0 * time).cos()
     });
-    table("profile.csv", "drive", |time| {
+    table("profile.csv", "drive", 80, |time| {
         4.0 - 3.5 * (3.0 * time).cos()
+    });
+    table("slow.csv", "drive", 200, |time| {
+        4.0 - 3.5 * (std::f64::consts::TAU * time / 5.0).cos()
     });
     folder
 }

@@ -29,6 +29,8 @@ pub enum Fault {
     Spike(f64),
     /// The reading stands still from here on.
     Stuck,
+    /// What it measures is jammed from here on; its noise goes on.
+    Jam,
     /// The drive that answers it never comes.
     NoDrive,
     /// Nothing comes any more.
@@ -73,6 +75,7 @@ struct Board {
     applied: u64,
     output: f64,
     stuck: Option<f64>,
+    jammed: Option<f64>,
     frozen: bool,
     lost_until: u64,
     last_line: String,
@@ -178,7 +181,8 @@ impl Board {
         self.report.samples += 1;
         let n = self.report.samples;
         let turns = (n as f64 * 12.9898).sin() * 43758.5453;
-        let mut reading = self.output + 0.007 * (turns - turns.floor() - 0.5);
+        let mut reading =
+            self.jammed.unwrap_or(self.output) + 0.007 * (turns - turns.floor() - 0.5);
         let faults: Vec<Fault> = self
             .faults
             .iter()
@@ -199,6 +203,7 @@ impl Board {
                 Fault::Nan(count) => self.lost_until = n + count,
                 Fault::Spike(size) => reading += size,
                 Fault::Stuck => self.stuck = Some(reading),
+                Fault::Jam => self.jammed = Some(self.output),
                 Fault::Freeze => self.frozen = true,
                 Fault::Kill => {
                     let _ = self

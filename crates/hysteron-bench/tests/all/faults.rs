@@ -1,8 +1,8 @@
 //! What cables, sensors and boards do, and what a run makes of it.
 
-use super::bench::{PID, Ran, bench, column};
+use super::bench::{PID, Ran, bench, column, config, folder, plain};
 use super::device::{Fault, SAFE};
-use hysteron_bench::End;
+use hysteron_bench::{End, Options};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -131,5 +131,77 @@ fn random_faults_leave_the_drive_safe_and_the_log_whole() {
         let gone = |(_, fault): &(u64, Fault)| fault.is_fatal() && *fault != Fault::Stuck;
         let fatal = faults.iter().any(gone);
         assert!(!fatal || ran.summary.end != End::Done, "{case}: {faults:?}");
+    }
+}
+
+/// A profile that takes 5 s there and back, twice.
+fn record(faults: &[(u64, Fault)], more: &str) -> Ran {
+    let text = format!(
+        "mode = 'record'
+log = 'run.csv'
+limits = {{ drive = [0.3, 7.7] }}
+safety = {{ lost_s = 0.4{more} }}
+profile = {{ table = 'slow.csv' }}
+"
+    );
+    bench(&text, faults)
+}
+
+#[test]
+fn a_profile_that_moves_nothing_ends_with_its_first_sweep() {
+    let short = ", stuck_s = 1";
+    assert_eq!(record(&[], short).summary.end, End::Done);
+    // The last reading is one of the first: nothing is known of what moved.
+    for fault in [Fault::Stuck, Fault::Jam] {
+        let ran = record(&[(1, fault)], short);
+        let End::Unmoved(found) = ran.summary.end else {
+            panic!("{}", ran.summary.end);
+        };
+        let (first, last) = found.samples;
+        assert!(first == 1 && (90..=101).contains(&last), "{found:?}");
+        assert!(found.drives.0 < 0.6 && found.drives.1 > 7.4, "{found:?}");
+        assert!(found.outputs.1 - found.outputs.0 < 0.008, "{found:?}");
+        assert_eq!(ran.summary.samples, last);
+        assert_eq!(drives(&ran).last(), Some(&SAFE));
+        let said = ran.summary.end.to_string();
+        assert!(
+            said.starts_with("stuck: the output moved by no more"),
+            "{said}"
+        );
+        assert_eq!(ran.summary.end.code(), 4);
+        // A slow actuator has its time.
+        let ran = record(&[(1, fault)], ", stuck_s = 7");
+        assert!(matches!(ran.summary.end, End::Unmoved(found) if found.samples.1 >= 140));
+    }
+    // Without `stuck_s` it has more time than this profile takes.
+    assert_eq!(record(&[(1, Fault::Jam)], "").summary.end, End::Done);
+    // One that moved may come to rest.
+    assert_eq!(record(&[(60, Fault::Jam)], short).summary.end, End::Done);
+}
+
+/// Of the simulated ones the spring is the slowest: it takes a minute to become warm.
+#[test]
+fn simulated_plants_are_never_stopped() {
+    let folder = folder();
+    for (kind, most) in [("spring", 2.0), ("preisach", 150.0), ("wire", 1.0)] {
+        for period in [3.0, 10.0, 30.0, 90.0] {
+            for share in [0.6, 0.89, 0.91, 1.0] {
+                let rows = (0..200).map(|n| {
+                    let phase = std::f64::consts::TAU * f64::from(n) / period;
+                    format!("{n},{}\n", share * most * (0.5 - 0.5 * phase.cos()))
+                });
+                let text = format!("time,drive\n{}", rows.collect::<String>());
+                std::fs::write(folder.path().join("own.csv"), text).unwrap();
+                let text = "mode = 'record'\nlog = 'run.csv'\nprofile = { table = 'own.csv' }\n";
+                let device = format!("simulated = '{kind}'");
+                let config = config(&folder, text, &device);
+                let options = Options {
+                    force: true,
+                    ..Options::default()
+                };
+                let found = plain(&config, &options).unwrap();
+                assert_eq!(found.end, End::Done, "{kind}: {share} in {period} s");
+            }
+        }
     }
 }

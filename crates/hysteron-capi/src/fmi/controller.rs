@@ -100,7 +100,7 @@ impl Block {
         }
         own.manual = inputs.manual;
         let mut flag = 0;
-        let measured = own.read(self, settings, inputs.measured, dt, &mut flag);
+        let measured = own.read(self, settings, inputs, dt, &mut flag);
         if let Some(signal) = own.acting {
             let acting = Inputs { signal, ..*inputs };
             own.prediction = self.forward(&mut own.followed, &acting, dt)?.output;
@@ -194,7 +194,7 @@ impl Loop {
         &mut self,
         block: &Block,
         settings: &Settings,
-        reading: f64,
+        inputs: &Inputs,
         dt: f64,
         flag: &mut i32,
     ) -> Option<f64> {
@@ -203,10 +203,11 @@ impl Loop {
             self.under_way.push(drive, Some(dt));
             acting
         });
-        let expected = self.prediction;
+        let (reading, expected) = (inputs.measured, self.prediction);
         let cause = Cause {
             expected: (expected.is_finite() && self.drive.is_some())
                 .then_some((expected, (0.0, block.control.range))),
+            wanted: inputs.signal,
             drive: self.drive.unwrap_or(settings.drives.0),
             drives: settings.drives,
         };

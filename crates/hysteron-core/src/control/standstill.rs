@@ -1,4 +1,5 @@
-//! Notices an output that stands still to the last bit where it has to move.
+//! Notices an output that stands still where it has to move: to the last bit, or but for its noise
+//! while the drive does all that it can.
 
 /// Without a model: the drive has gone this share of its way to a limit, or of its range.
 const WAY: f64 = 0.45;
@@ -7,6 +8,17 @@ const RANGE: f64 = 0.02;
 const ROOM: f64 = 0.5;
 /// With a model: it expects a change by this share of its output's range.
 const EXPECTED: f64 = 0.05;
+
+/// With a model and noise: the readings stay within this share of the range of its outputs,
+const NOISE: f64 = 0.01;
+/// they are off what is wanted by this share,
+const ASIDE: f64 = 0.05;
+/// the drive is at a limit, but for this share of its range,
+const FULL: f64 = 0.1;
+/// and the model expects a change by this share. All four together are a plant that is jammed, or a
+/// dead sensor. One that is slow, weak or colder than the model leaves where it was as the drive
+/// comes to a limit, or holds what is wanted.
+const JAMMED: f64 = 0.4;
 
 /// Without a model: a sensor that has given so many readings is alive. One that has not may be in
 /// front of a dead band.
@@ -19,6 +31,8 @@ const CHANCE: u32 = 3;
 pub struct Cause {
     /// The output that the model expects, and the range of its outputs.
     pub expected: Option<(f64, (f64, f64))>,
+    /// The output that is wanted; NaN where none is.
+    pub wanted: f64,
     /// The drive that acts, or the command of an inner loop, and its limits.
     pub drive: f64,
     /// The lowest and the highest.
@@ -30,7 +44,10 @@ pub struct Cause {
 pub struct Standstill {
     /// The last reading, and the cause when it was new.
     since: Option<(f64, Cause)>,
-    /// For how many samples and s the output should have moved.
+    /// The first reading that all since were near to, and what the model expected then.
+    near: Option<(f64, f64)>,
+    /// For how many samples the output stood still to the last bit where it should have moved, and
+    /// for how long it did so or was jammed, s.
     still: (u32, f64),
     /// Whether the last reading was the one before it.
     repeats: bool,
@@ -39,30 +56,33 @@ pub struct Standstill {
 }
 
 impl Standstill {
-    /// How long the output has stood still where it should have moved, s; `None` where it is not
-    /// stuck. `dt` is the time since the last sample.
+    /// How long the output has stood still to the last bit where it should have moved, s; `None`
+    /// where it is not stuck. `dt` is the time since the last sample.
     pub fn push(&mut self, reading: f64, cause: Cause, dt: f64) -> Option<f64> {
+        let jammed = self.is_jammed(reading, cause);
         self.repeats = self.since.is_some_and(|(last, _)| last == reading);
-        match self.since {
-            Some((_, before)) if self.repeats => {
-                let (count, time) = self.still;
-                if count > 0 || self.should_move(before, cause) {
-                    self.still = (count.saturating_add(1), time + dt);
-                }
-            }
+        let (count, time) = self.still;
+        let frozen = match self.since {
+            Some((_, before)) if self.repeats => count > 0 || self.should_move(before, cause),
             _ => {
-                (self.since, self.still) = (Some((reading, cause)), (0, 0.0));
+                self.since = Some((reading, cause));
                 self.new = self.new.saturating_add(1);
+                false
             }
-        }
-        self.stuck_s()
+        };
+        let count = if frozen { count.saturating_add(1) } else { 0 };
+        let time = if frozen || jammed { time + dt } else { 0.0 };
+        self.still = (count, time);
+        (count >= CHANCE).then_some(time)
     }
 
-    /// As [`Standstill::push`] found it last.
+    /// As [`Standstill::push`] found it last; or how long the output has been where it was but for
+    /// its noise, s, with the drive at a limit. Such a reading is still a reading: of a plant that
+    /// is jammed, or later than its model.
     #[must_use]
     pub fn stuck_s(&self) -> Option<f64> {
         let (count, time) = self.still;
-        (count >= CHANCE).then_some(time)
+        (count >= CHANCE || (count == 0 && time > 0.0)).then_some(time)
     }
 
     /// Begins anew to notice.
@@ -83,6 +103,26 @@ impl Standstill {
             cause.drive + above.max(least),
         );
         (cause.expected.is_none() && self.new >= ALIVE).then_some(room)
+    }
+
+    /// Whether the output but for its noise is where it was, and the drive at a limit, though it is
+    /// not wanted there and the model expects it elsewhere.
+    fn is_jammed(&mut self, reading: f64, cause: Cause) -> bool {
+        let Some((expected, (low, high))) = cause.expected else {
+            self.near = None;
+            return false;
+        };
+        let range = (high - low).abs();
+        let is_near = |(first, _): &(f64, f64)| (reading - first).abs() <= NOISE * range;
+        let (_, then) = *match self.near.filter(is_near) {
+            Some(near) => self.near.insert(near),
+            None => self.near.insert((reading, expected)),
+        };
+        let (low, high) = cause.drives;
+        let margin = FULL * (high - low);
+        (expected - then).abs() > JAMMED * range
+            && (cause.wanted - reading).abs() > ASIDE * range
+            && (cause.drive < low + margin || cause.drive > high - margin)
     }
 
     fn should_move(&self, before: Cause, now: Cause) -> bool {
@@ -108,6 +148,7 @@ mod tests {
         let (expected, drives) = (None, (0.0, 1.0));
         Cause {
             expected,
+            wanted: f64::NAN,
             drive,
             drives,
         }
@@ -164,6 +205,41 @@ mod tests {
                 .is_some_and(|time| (time - 0.4).abs() < 1e-9)
         );
         assert_eq!(still.push(1.1, expected(2.0), 0.1), None);
+    }
+
+    /// A noise of less than half a percent of the range.
+    fn noise(n: u32) -> f64 {
+        0.04 * f64::from(n * 7 % 3) - 0.04
+    }
+
+    /// The first sample of 1000 at which an output is stuck; `at` says what the model expects, what
+    /// is wanted and what is read.
+    fn first(drive: f64, at: impl Fn(f64) -> [f64; 3]) -> Option<u32> {
+        let mut still = Standstill::default();
+        (0..1000).find(|&n| {
+            let [output, wanted, reading] = at(f64::from(n));
+            let cause = Cause {
+                wanted,
+                drive,
+                ..expected(output)
+            };
+            let frozen = still.push(reading + noise(n), cause, 0.1);
+            frozen.is_some() || still.stuck_s().is_some()
+        })
+    }
+
+    #[test]
+    fn noise_is_no_motion_while_the_drive_does_all_it_can() {
+        let goes = |n: f64| 9.0 - 6.0 * 0.9f64.powf(n);
+        // Past four tenths after eleven samples.
+        assert_eq!(first(1.0, |n| [goes(n), 8.0, 3.0]), Some(11));
+        assert_eq!(first(0.0, |n| [12.0 - goes(n), 2.0, 9.0]), Some(11));
+        // The drive could do more; the model expects no more; it is wanted there.
+        assert_eq!(first(0.85, |n| [goes(n), 8.0, 3.0]), None);
+        assert_eq!(first(1.0, |n| [goes(n).min(6.9), 8.0, 3.0]), None);
+        assert_eq!(first(1.0, |n| [goes(n), 3.4, 3.0]), None);
+        // A twentieth of what is expected is a motion.
+        assert_eq!(first(1.0, |n| [0.01 * n, 20.0, 0.0005 * n]), None);
     }
 
     #[test]

@@ -174,8 +174,8 @@ impl<T: Number> Constants<T> {
             mixed,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
             controller: late.map(|late| {
-                let numbers = (18 + late) * T::BYTES;
-                aligned(5 * word) + numbers + aligned(2 * word + 8)
+                let numbers = (20 + late) * T::BYTES;
+                aligned(5 * word) + numbers + aligned(5)
             }),
             adaptation: learns.map(|(_, numbers)| adaptive + numbers * T::BYTES),
         }

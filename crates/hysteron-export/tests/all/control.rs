@@ -153,6 +153,7 @@ enum Read {
     Plant,
     Missing,
     Stuck,
+    Jammed,
 }
 
 /// References that wander, jump and rest, with readings that are missing or stand still.
@@ -180,7 +181,8 @@ fn events(rng: &mut StdRng, each: &Loop, count: usize) -> Vec<Event> {
             Read::Plant,
             Read::Missing,
             Read::Stuck,
-        ][rng.random_range(0..5)];
+            Read::Jammed,
+        ][rng.random_range(0..6)];
         let noise = [0.0, 0.001][rng.random_range(0..2)] * (high - low);
         for _ in 0..rng.random_range(1..25) {
             let ahead = if rng.random_bool(0.8) {
@@ -227,7 +229,7 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
     let mut controller = Controller::new(scheme).unwrap();
     // The plant is another one than the model: it drifts and has another gain.
     let (mut state, dt) = (model.start(), Some(each.scheme.interval_s));
-    let (mut output, mut shown) = (model.output_range().0, 0.0);
+    let (mut output, mut shown, mut held) = (model.output_range().0, 0.0, 0.0);
     let mut drive = None;
     let (mut commands, mut expected) = (format!("m {n} 1\n"), String::from("m 0\n"));
     for event in events {
@@ -257,7 +259,11 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
                     Read::Plant => 0.9 * output + 0.3 + noise,
                     Read::Missing => f64::NAN,
                     Read::Stuck => shown,
+                    Read::Jammed => held + noise,
                 };
+                if reading != Read::Jammed {
+                    held = shown;
+                }
                 let due = controller.due();
                 let ahead = if due == 0 { reference } else { ahead };
                 writeln!(

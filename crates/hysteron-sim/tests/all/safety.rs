@@ -1,7 +1,9 @@
 //! What keeps a wire whole: no bump, no kick, no spike, no drive to a limit by a broken sensor.
 
-use hysteron::control::{Compensator, Controller, Gains, Reading, Reference, Scheme};
+use hysteron::control::{Compensator, Controller, Gains, Reading, Reference, Safety, Scheme};
 use hysteron::{AdaptOptions, Learner, Model, Operator, Plane, Policy, Sign};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 const DT: f64 = 0.05;
 
@@ -257,4 +259,80 @@ fn a_learner_is_used_only_while_it_predicts_better() {
         let used = controller.compensator().unwrap().trusts_learner();
         assert_eq!(used, learns, "{weight}");
     }
+}
+
+/// How a loop with inverse and PID goes on around a plant for 2000 samples: the sample at which it is
+/// given up, and those with full drive until then. `plant` gives the output for a drive.
+fn given_up(
+    reference: impl Fn(usize) -> f64,
+    mut plant: impl FnMut(usize, f64) -> f64,
+) -> (Option<usize>, usize) {
+    let pid = schemes().remove(5).pid;
+    let scheme = Scheme {
+        compensator: Some(Compensator::fixed(&model(0.3)).unwrap()),
+        pid,
+        safety: Safety {
+            lost_s: None,
+            stuck_s: Some(1.0),
+        },
+        ..Scheme::new(DT, (0.0, 10.0))
+    };
+    let (mut controller, mut drive, mut full) = (Controller::new(scheme).unwrap(), 0.0, 0);
+    for n in 0..2000 {
+        let reading = read(plant(n, drive) + 0.02 * noise(n));
+        let action = controller.step_after(DT, at(reference(n)), &[], reading);
+        let action = action.unwrap();
+        if action.status.safe {
+            return (Some(n), full);
+        }
+        drive = action.drive;
+        full += usize::from(drive > 9.9);
+    }
+    (None, full)
+}
+
+/// The model's outputs go from 0.5 to 6.8: noise of a third of a percent.
+#[test]
+fn a_jam_with_noise_is_given_up_before_full_drive_lasts() {
+    for at in [30, 60, 100, 140, 500] {
+        let (plant, mut state) = (model(0.3), model(0.3).start());
+        let mut output = 0.5;
+        let (ended, full) = given_up(sine, |n, drive| {
+            let still = plant.step(&mut state, drive).unwrap().output;
+            if n < at {
+                output += DT / 0.3 * (still - output);
+            }
+            output
+        });
+        // A second of proof, and what the loop takes to wind up: the reference's period is 6 s.
+        assert!(ended.is_some_and(|n| n < at + 140), "{at}: {ended:?}");
+        assert!(full < 40, "{at}: {full}");
+    }
+}
+
+/// Weaker and stronger, slower, colder and warmer than the model, and references beyond its reach.
+#[test]
+fn an_honest_plant_is_never_given_up() {
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let mut full = 0;
+    for case in 0..600 {
+        let plant = model(0.3 * rng.random_range(0.2..1.7));
+        let (lag, colder) = (rng.random_range(0.05..1.5), rng.random_range(-2.0..2.0));
+        let (mut state, mut output) = (plant.start(), 0.5);
+        let (middle, swing) = (rng.random_range(1.0..6.0), rng.random_range(0.0..3.0));
+        let (speed, jumps) = (rng.random_range(0.001..0.1), rng.random_bool(0.3));
+        let reference = |n: usize| {
+            let wave = (speed * n as f64).sin();
+            middle + swing * if jumps { wave.signum() } else { wave }
+        };
+        let (ended, most) = given_up(reference, |_, drive| {
+            let still = plant.step(&mut state, drive - colder).unwrap().output;
+            output += DT / lag * (still - output);
+            output
+        });
+        full += usize::from(most > 100);
+        assert_eq!(ended, None, "{case}: lag {lag}, colder {colder}");
+    }
+    // Many are driven as far as they can be.
+    assert!(full > 100, "{full}");
 }

@@ -214,7 +214,7 @@ impl Controller {
         refuse_not_finite(target.output)?;
         next.iter()
             .try_for_each(|&output| refuse_not_finite(output))?;
-        let (output, input, mut status) = self.read(reading);
+        let (output, input, mut status) = self.read(reading, target.output);
         self.follow((output, input), &mut status)?;
         let command = self.command(target, next, output.value(), &mut status)?;
         status.safe = self.silence.given_up();
@@ -266,7 +266,7 @@ impl Controller {
     ) -> Result<Action> {
         refuse_not_finite(command)?;
         self.pass(dt)?;
-        let (output, input, mut status) = self.read(reading);
+        let (output, input, mut status) = self.read(reading, f64::NAN);
         self.follow((output, input), &mut status)?;
         if let Some(compensator) = &mut self.scheme.compensator {
             compensator.set_out_again();
@@ -333,7 +333,7 @@ impl Controller {
             output,
             input: None,
         };
-        let (output, ..) = self.read(reading);
+        let (output, ..) = self.read(reading, f64::NAN);
         if let (Some(compensator), Some(input)) = (&mut self.scheme.compensator, self.acting) {
             self.prediction = compensator.follow(input, Some(dt), output.value())?.0;
         }
@@ -355,7 +355,8 @@ impl Controller {
     /// How long the output has stood still to the last bit where it has to move, s; `None` where
     /// its sensor works. It has to move where the model expects 5 % of its range; without a model,
     /// where the drive has gone almost half its way to a limit since, and no further, once the
-    /// sensor has shown that it works.
+    /// sensor has shown that it works. Or it is still but for a noise of 1 % of the model's range,
+    /// off what is wanted, with the drive at a limit and the model four tenths of it away.
     #[must_use]
     pub fn stuck_s(&self) -> Option<f64> {
         self.standstill.stuck_s()
@@ -398,8 +399,8 @@ impl Controller {
 
     /// Filters the readings of output and input, and holds back those that cannot be. If no sensor
     /// measures the input, the last command is used in its place, except where an inner loop needs
-    /// a measurement.
-    fn read(&mut self, reading: Reading) -> (Sensed, Option<Sensed>, LoopStatus) {
+    /// a measurement. `wanted` is the output that is due, NaN for none.
+    fn read(&mut self, reading: Reading, wanted: f64) -> (Sensed, Option<Sensed>, LoopStatus) {
         let dt = self.dt;
         let input = match (reading.input, self.scheme.inner) {
             (Some(input), _) => Some(self.input.read(input, dt)),
@@ -412,7 +413,7 @@ impl Controller {
         let mut status = LoopStatus::default();
         let mut output = reading.output;
         if output.is_finite() {
-            status.stuck = self.stands_still(output, input);
+            status.stuck = self.stands_still(output, input, wanted);
             status.rejected = !self.passes(output);
             if status.stuck || status.rejected {
                 output = f64::NAN;
@@ -433,7 +434,7 @@ impl Controller {
     }
 
     /// Whether the output stands still where it has to move.
-    fn stands_still(&mut self, output: f64, input: Option<Sensed>) -> bool {
+    fn stands_still(&mut self, output: f64, input: Option<Sensed>, wanted: f64) -> bool {
         let compensator = self.scheme.compensator.as_ref();
         let expected = compensator.and_then(|compensator| {
             let range = compensator.output_range();
@@ -447,6 +448,7 @@ impl Controller {
         };
         let cause = Cause {
             expected,
+            wanted,
             drive: drive.unwrap_or(drives.0),
             drives,
         };
