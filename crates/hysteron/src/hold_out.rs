@@ -172,7 +172,7 @@ pub fn fit_holding_out(
     let acting = model.delay().of_recordings(recordings);
     tell_errors(&mut model, &acting, |n| !held[n])?;
     // The other recordings come behind those fitted, and all of them is held out.
-    let all: Vec<&Recording> = recordings.iter().chain(others).collect();
+    let all: Vec<&Recording> = recordings.iter().chain(others.iter().copied()).collect();
     let outputs = simulated(&model, &all)?;
     let is_held = |n: usize| held.get(n).copied().unwrap_or(true);
     let report = compare(&training, &all, &outputs, is_held)?;
