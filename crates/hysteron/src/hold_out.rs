@@ -123,7 +123,7 @@ pub fn fit_holding_out(
             |fitted: &Recording| fitted.input == other.input && fitted.output == other.output;
         recordings.iter().any(same)
     };
-    if others.iter().any(|other| again(&other)) {
+    if others.iter().any(again) {
         let words = "take another recording for {}, or a part of this one";
         let part = Setting::any("hold-out");
         let what = "a recording that is held out is among those fitted".to_owned();
