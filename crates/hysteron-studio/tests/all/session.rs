@@ -199,7 +199,9 @@ fn files_and_rows_for_validation_test_a_fit() {
     );
     let options = json!({"levels": "8", "bootstrap": "0"});
     fit(&mut session, json!({"request": "fit", "options": options}));
-    let second = session.open("b.csv", table().into()).unwrap();
+    // Another day: the same rows with another last reading.
+    let other = table().trim_end().trim_end_matches(",1").to_owned() + "1,1\n";
+    let second = session.open("b.csv", other.into()).unwrap();
     ask(
         &mut session,
         json!({"request": "use", "file": second, "purpose": "validate"}),
