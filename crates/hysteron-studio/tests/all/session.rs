@@ -199,8 +199,9 @@ fn files_and_rows_for_validation_test_a_fit() {
     );
     let options = json!({"levels": "8", "bootstrap": "0"});
     fit(&mut session, json!({"request": "fit", "options": options}));
-    // Another day: the same rows with another last reading.
-    let other = table().trim_end().trim_end_matches(",1").to_owned() + "1,1\n";
+    // Another day, with another first reading.
+    let other = table().replacen(",20,4,1", ",20,4.01,1", 1);
+    assert_ne!(other, table());
     let second = session.open("b.csv", other.into()).unwrap();
     ask(
         &mut session,
