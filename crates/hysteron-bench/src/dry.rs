@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::plan::Sources;
 use crate::protocol::ToDevice;
 use crate::summary::{Options, log_path};
+use crate::sweep::LEAST_S;
 use crate::{device, log};
 
 /// What a run would do, as lines for people. Nothing is opened and nothing is sent.
@@ -68,13 +69,14 @@ pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
         };
         lines.push(format!("control   {}; {gains}", options.kind.words()));
     }
+    let of_noise = format!("{LEAST_S} s of noise");
     lines.push(format!(
         "safety    lost after {}; stuck after {}",
         or(seconds(config.safety.lost_s), "0.5 s, at least 5 samples"),
         or(
             seconds(config.safety.stuck_s),
             match config.mode {
-                Mode::Record => "60 s of noise",
+                Mode::Record => &of_noise,
                 _ => "1 s, at least 5 samples",
             }
         ),

@@ -1,7 +1,7 @@
 //! `hysteron inspect`
 
-use crate::remedy::text_of_doubt;
-use crate::terminal::{Result, print, say};
+use crate::remedy::say_doubts;
+use crate::terminal::{Result, print};
 use crate::{args, recording, text};
 use hysteron::{
     Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, StageSummary,
@@ -68,9 +68,7 @@ fn summary(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
     if args.json.json {
         return print(&json!(summary).to_string());
     }
-    for doubt in &summary.doubts {
-        say(format_args!("{}", text_of_doubt(doubt)));
-    }
+    say_doubts(&summary.doubts, "");
     print(&recording_text(&summary))
 }
 
@@ -224,25 +222,21 @@ fn apart((least, most): (f64, f64)) -> String {
     }
 }
 
-/// A stage with its constants. Long lists are told by their ends.
+/// A stage with its constants. Of many numbers their range is told.
 fn stage(stage: &StageSummary) -> String {
     let rows = stage.constants.iter().map(|constant| {
-        let numbers = match &constant.numbers[..] {
-            few if few.len() <= FEW => few.iter().copied().map(text::number).collect::<Vec<_>>(),
-            [first, .., last] => vec![format!(
-                "{} numbers, {} to {}",
-                constant.numbers.len(),
-                text::number(*first),
-                text::number(*last)
-            )],
-            [..] => Vec::new(),
+        let count = constant.numbers.len();
+        let numbers = if count <= FEW {
+            let each = constant.numbers.iter().copied().map(text::number);
+            each.collect::<Vec<_>>().join(", ")
+        } else {
+            let (low, high) = hysteron::range(&constant.numbers);
+            let (low, high) = (text::number(low), text::number(high));
+            format!("{count} numbers, {low} to {high}")
         };
         let unit = constant.unit.as_deref().unwrap_or_default();
-        let name = format!("  {}", constant.name);
-        vec![
-            name,
-            format!("{} {unit}", numbers.join(", ")).trim_end().into(),
-        ]
+        let numbers = format!("{numbers} {unit}").trim_end().to_owned();
+        vec![format!("  {}", constant.name), numbers]
     });
     let rows: Vec<_> = rows.collect();
     format!("{}: {}\n{}", stage.name, stage.about, text::table(&rows))

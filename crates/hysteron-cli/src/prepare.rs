@@ -1,5 +1,6 @@
 //! `hysteron prepare`, and the same steps before a fit.
 
+use crate::remedy::say_doubts;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
@@ -85,12 +86,7 @@ pub(crate) fn before_fit(
     let (recording, report) = asked_for(recording, args, which)?;
     if report.is_none() {
         // With the preparation they are refused.
-        for doubt in hysteron::doubts(&recording)? {
-            say(format_args!(
-                "{which}{}",
-                crate::remedy::text_of_doubt(&doubt)
-            ));
-        }
+        say_doubts(&hysteron::doubts(&recording)?, which);
     }
     let rate = hysteron::rate_dependence(&recording)?;
     Ok((recording, report, rate))

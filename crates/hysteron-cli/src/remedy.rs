@@ -1,5 +1,6 @@
 //! Errors of the library, with its options as they are on the command line.
 
+use crate::terminal::say;
 use hysteron::{Advice, Doubt, Remedy, Setting, SettingValue};
 use std::error::Error;
 
@@ -15,8 +16,11 @@ pub(crate) fn text_of_advice(advice: &Advice) -> String {
     format!("{advice}: {}", spelt(&advice.remedy()))
 }
 
-pub(crate) fn text_of_doubt(doubt: &Doubt) -> String {
-    format!("{doubt}: {}", spelt(&doubt.remedy()))
+/// Says what is not to be believed, and what may help; `which` recording it is goes before.
+pub(crate) fn say_doubts(doubts: &[Doubt], which: &str) {
+    for doubt in doubts {
+        say(format_args!("{which}{doubt}: {}", spelt(&doubt.remedy())));
+    }
 }
 
 fn spelt(remedy: &Remedy) -> String {

@@ -47,9 +47,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let recordings = recording::segments(&args.file, columns, &args.repair)?;
     let plane = hysteron::plane_of(&recordings, 20)?;
     let summary = hysteron::inspect_recording(&recordings, plane)?;
-    for doubt in &summary.doubts {
-        say(format_args!("{}", remedy::text_of_doubt(doubt)));
-    }
+    remedy::say_doubts(&summary.doubts, "");
     let (model, held_out) = fit(&recordings)?;
     let verdict = Verdict::of_fit(&model, &recordings)?;
     let mut advice = hysteron::advice(&model, &recordings)?;

@@ -4,7 +4,7 @@ use super::one::{Evaluation, InverseEvaluation, InverseRun, keeping};
 use crate::error::Result;
 use crate::model::{BandEvaluation, Model, Start};
 use crate::recording::{Recording, no_recordings};
-use crate::series::{Errors, range_of_all};
+use crate::series::{Errors, fair_range_of_all};
 
 /// Runs `model` forward over the measured input, and its inverse over the measured output. Both
 /// start where the model does ([`Model::start`]), and use time and load of the recording as far as
@@ -107,7 +107,7 @@ fn joined(parts: Vec<Evaluation>, recordings: &[Recording]) -> Result<Evaluation
         }
     }
     if inverses.len() == recordings.len() {
-        let input = range_of_all(recordings.iter().map(|recording| &recording.input));
+        let input = fair_range_of_all(recordings.iter().map(|recording| &recording.input));
         let (mut moving, mut hold, mut anticipate) = (Vec::new(), Vec::new(), Vec::new());
         for inverse in inverses {
             moving.extend(inverse.moving);
@@ -128,7 +128,7 @@ pub(crate) fn over_all(
     parts: impl IntoIterator<Item = Errors>,
     recordings: &[Recording],
 ) -> Result<Errors> {
-    let output = range_of_all(recordings.iter().map(|recording| &recording.output));
+    let output = fair_range_of_all(recordings.iter().map(|recording| &recording.output));
     Errors::joined(parts, output).ok_or_else(no_recordings)
 }
 

@@ -17,7 +17,8 @@ const LEFT: f64 = 0.1;
 const MOVES: f64 = 0.3;
 /// Where they turn, by at least this share back.
 const TURNS: f64 = 0.1;
-/// Where a model errs little, so many times its error are enough, and this share.
+/// Where the model errs little, a smaller move is clear: so many times its error, and at least this
+/// share of the usual range. The first number is for the way there, the second for the way back.
 const TIMES: [f64; 2] = [10.0, 4.0];
 const CLEARLY: [f64; 2] = [0.05, 0.02];
 /// There a channel stands still if it moves by at most this share of its usual range.

@@ -11,7 +11,7 @@ use std::ops::Range;
 /// Fewer equal readings in a row are not told from a slow signal.
 const SHORTEST: usize = 4;
 /// Where a series comes back, it steps so many times further than nearby.
-const STEP: f64 = 2.0;
+pub(crate) const STEP: f64 = 2.0;
 /// The other series moves by this share of its usual range meanwhile.
 const MOVES: f64 = 0.02;
 /// A series that rests for more than this share of its samples is one of steps, or a coarse one.
@@ -38,13 +38,8 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
         return long;
     }
     let step = |n: usize| (values[n] - values[n - 1]).abs();
-    let nearby = |run: &Range<usize>| {
-        let before = (run.start.saturating_sub(STEPS) + 1..run.start).map(step);
-        let after = (run.end + 1..values.len().min(run.end + STEPS)).map(step);
-        before.chain(after).fold(0.0, f64::max)
-    };
     let jumps = |run: &Range<usize>, n: usize| {
-        let near = nearby(run);
+        let near = step_near(values, run);
         (1..values.len()).contains(&n) && near > 0.0 && step(n) > STEP * near
     };
     // A drive may rest at the end of its range, while what it moved goes back.
@@ -73,6 +68,14 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
         false => run.start + 1,
     };
     held.iter().map(|run| begin(run)..run.end).collect()
+}
+
+/// The largest step just before and just after a run of samples.
+pub(crate) fn step_near(values: &[f64], run: &Range<usize>) -> f64 {
+    let step = |n: usize| (values[n] - values[n - 1]).abs();
+    let before = (run.start.saturating_sub(STEPS) + 1..run.start).map(step);
+    let after = (run.end + 1..values.len().min(run.end + STEPS)).map(step);
+    before.chain(after).fold(0.0, f64::max)
 }
 
 /// The number of samples in a row within which a series hardly turns twice: half of what it takes

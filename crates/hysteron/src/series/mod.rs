@@ -25,7 +25,7 @@ mod turning;
 
 pub use errors::Errors;
 pub(crate) use runs::Runs;
-pub(crate) use spread::range_of_all;
 pub use spread::{fair_range, mean_and_deviation, range};
+pub(crate) use spread::{fair_range_of_all, range_of_all};
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};
 pub(crate) use turning::{branch_spans, clear_branches};

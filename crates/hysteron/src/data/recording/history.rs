@@ -3,14 +3,10 @@
 
 use super::columns::TIME;
 use crate::recording::long_gaps;
+use crate::series::lost::{STEP, step_near};
 
 /// So many rows with the times and values of earlier ones are those rows, whatever follows.
 const COPIED: usize = 2;
-
-/// Where a series goes on, it steps at most so many times further than at this number of rows on
-/// either side.
-const FURTHER: f64 = 2.0;
-const NEAR: usize = 6;
 
 /// What the clock tells of rows, by their index.
 #[derive(Debug, Default, PartialEq)]
@@ -81,12 +77,10 @@ impl History {
 
 /// Whether the series go on at row `n` as they do nearby, whatever its time is: the clock was set.
 pub(super) fn goes_on(series: &[Vec<f64>], n: usize) -> bool {
-    series.iter().enumerate().all(|(s, values)| {
-        let step = |n: usize| (values[n] - values[n - 1]).abs();
-        let near =
-            (n.saturating_sub(NEAR).max(1)..values.len().min(n + NEAR + 1)).filter(|m| *m != n);
-        s == TIME || step(n) <= FURTHER * near.map(step).fold(0.0, f64::max)
-    })
+    let goes_on =
+        |values: &Vec<f64>| (values[n] - values[n - 1]).abs() <= STEP * step_near(values, &(n..n));
+    let mut each = series.iter().enumerate();
+    each.all(|(s, values)| s == TIME || goes_on(values))
 }
 
 /// The indices at which segments begin, in rows that were kept: those that go `back`, and those

@@ -212,7 +212,11 @@ impl Samples {
             Some(fault) if repair == Repair::Refuse => {
                 return Err(refusal(fault, &notes, set));
             }
-            Some(_) if self.places.len() > 0 && self.missing.count > self.places.len() as u64 => {
+            Some(_) if self.places.len() == 0 => {
+                let problem = "no row has a number in every column asked for";
+                return Err(table.fault_at(None, None, problem.into()));
+            }
+            Some(_) if self.missing.count > self.places.len() as u64 => {
                 // They are not what a logger lost.
                 let count = self.missing.count;
                 let problem = format!(
@@ -223,10 +227,6 @@ impl Samples {
                 );
                 let first = self.missing.first.first().copied();
                 return Err(table.fault_at(first, None, problem));
-            }
-            Some(_) if self.places.len() == 0 => {
-                let problem = "no row has a number in every column asked for";
-                return Err(table.fault_at(None, None, problem.into()));
             }
             _ => {}
         }

@@ -6,7 +6,7 @@ use crate::identify::weights::units::Folds;
 use crate::model::RivalScore;
 use crate::recording::Recording;
 use crate::rivals::{Measured, Predictor, RivalKind};
-use crate::series::{Runs, fair_range};
+use crate::series::{Runs, fair_range_of_all};
 use std::ops::Range;
 
 /// The errors of simple rivals on samples that their `folds` left out.
@@ -22,12 +22,7 @@ pub(super) fn left_out(recordings: &[Recording], folds: &Folds) -> Result<Vec<Ri
         true => &[RivalKind::Line, RivalKind::Interpolation],
         false => &[RivalKind::Line],
     };
-    let outputs = recordings
-        .iter()
-        .map(|recording| fair_range(&recording.output));
-    let (low, high) = outputs.fold((f64::INFINITY, f64::NEG_INFINITY), |all, own| {
-        (all.0.min(own.0), all.1.max(own.1))
-    });
+    let (low, high) = fair_range_of_all(recordings.iter().map(|recording| &recording.output));
     let mut scores = Vec::new();
     for &kind in kinds {
         let (mut squares, mut samples) = (0.0, 0);
