@@ -61,7 +61,7 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
             let run = hysteron::forward(model, &recordings, args.start.into());
             let named = |error| format!("{}: {}", file.display(), remedy::text_of(&error));
             let run = run.map_err(named)?;
-            verdicts.push(Verdict::of_forward(&recordings, &run)?);
+            verdicts.push(Verdict::of_forward(model, &recordings, &run)?);
             runs.push(run);
         }
         compared.push(Compared {

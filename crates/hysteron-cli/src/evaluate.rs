@@ -24,12 +24,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let named = Named::of(&args.data, &given, &args.repair)?;
     let columns = named.columns();
     let recordings = recording::segments(&args.data, columns, &args.repair)?;
-    let count = recordings.len();
-    let recordings = recordings.into_iter().enumerate().map(|(n, recording)| {
-        let prepared = prepare::asked_for(recording, &args.prepare, &recording::which(n, count));
-        Ok(prepared?.0)
-    });
-    let recordings: Vec<Recording> = recordings.collect::<Result<_>>()?;
+    let recordings = prepare::each_asked_for(recordings, &args.prepare)?;
     let start = args.start.into();
     let evaluation = match folder {
         Some(_) => hysteron::evaluate_from(&model, &recordings, start)?,
@@ -39,7 +34,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
             ..hysteron::evaluate_errors(&model, &recordings, start)?
         },
     };
-    let verdict = Verdict::of_evaluation(&recordings, &evaluation)?;
+    let verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
     if let Some(mut folder) = folder {
         let behind = recordings
             .iter()

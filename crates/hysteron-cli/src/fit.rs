@@ -51,12 +51,8 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 
     prepare::after_fit(&model, reports.iter().map(|(_, rate)| rate.as_ref()));
     let mut clipped = 0;
-    let mut advice = hysteron::advice(&model, &recordings)?;
+    let mut advice = prepare::advice(&model, &recordings, &how.prepare)?;
     advice.extend(held_out.iter().flat_map(HeldOut::advice));
-    if args.how.prepare.prepare {
-        // What the preparation left, it has judged.
-        advice.retain(|one| !matches!(one, Advice::Spikes { .. } | Advice::FalseReversals { .. }));
-    }
     for advice in advice {
         say(format_args!("{}", crate::remedy::text_of_advice(&advice)));
         if let Advice::Clipped { inputs, .. } = advice {

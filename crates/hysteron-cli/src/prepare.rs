@@ -4,7 +4,7 @@ use crate::remedy::say_doubts;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, Judged, LowPass, Model, Preparation, PrepareOptions, Progress, Quantity,
+    Advice, Columns, Judged, LowPass, Model, Preparation, PrepareOptions, Progress, Quantity,
     RateDependence, Recording, Repairs, SensorLag, Smoothed, Step, TableWriter,
 };
 use serde_json::json;
@@ -75,6 +75,31 @@ pub(crate) fn asked_for(
         say(format_args!("{which}{line}"));
     }
     Ok((prepared, Some(report)))
+}
+
+/// The recordings of a file, each after the steps that were asked for.
+pub(crate) fn each_asked_for(
+    recordings: Vec<Recording>,
+    args: &args::PrepareFirst,
+) -> Result<Vec<Recording>> {
+    let count = recordings.len();
+    let each = recordings.into_iter().enumerate();
+    let each = each.map(|(n, one)| Ok(asked_for(one, args, &recording::which(n, count))?.0));
+    each.collect()
+}
+
+/// What is to be said of a fit to recordings that were prepared as asked for.
+pub(crate) fn advice(
+    model: &Model,
+    recordings: &[Recording],
+    args: &args::PrepareFirst,
+) -> Result<Vec<Advice>> {
+    let mut advice = hysteron::advice(model, recordings)?;
+    if args.prepare {
+        // What the preparation left, it has judged.
+        advice.retain(|one| !one.is_cured_by_preparation());
+    }
+    Ok(advice)
 }
 
 /// As [`asked_for`], with what a fit is warned of; the report is for the JSON.

@@ -2,10 +2,9 @@
 
 use crate::columns::Given;
 use crate::terminal::{Result, Unclear, print, say};
-use crate::{args, hold_out, progress, recording, remedy, text};
+use crate::{args, prepare, progress, recording, remedy, text};
 use hysteron::{
-    Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, Roles,
-    TableReader, Verdict, fit_holding_out,
+    Advice, Columns, Fit, Model, Progress, Recording, RecordingSummary, Roles, TableReader, Verdict,
 };
 use hysteron_files::shell_word;
 use serde_json::json;
@@ -48,11 +47,12 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let plane = hysteron::plane_of(&recordings, 20)?;
     let summary = hysteron::inspect_recording(&recordings, plane)?;
     remedy::say_doubts(&summary.doubts, "");
-    let (model, held_out) = fit(&recordings)?;
+    let recordings = prepare::each_asked_for(recordings, &args.prepare)?;
+    let model = fit(&recordings)?;
     let verdict = Verdict::of_fit(&model, &recordings)?;
-    let mut advice = hysteron::advice(&model, &recordings)?;
-    advice.extend(held_out.iter().flat_map(HeldOut::advice));
-    let commands = commands(args, columns, held_out.is_some());
+    let advice = prepare::advice(&model, &recordings, &args.prepare)?;
+    let prepared = args.prepare.prepare || advice.iter().any(Advice::is_cured_by_preparation);
+    let commands = commands(args, columns, prepared);
     if let Some(file) = file {
         file.commit_with(model.to_json().as_bytes())?;
     }
@@ -68,7 +68,6 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
             "reasons": roles.reasons,
             "recording": summary,
             "fit": model.fit,
-            "hold_out": held_out,
             "verdict": verdict,
             "advice": advice.iter().map(remedy::text_of_advice).collect::<Vec<_>>(),
             "commands": commands,
@@ -77,7 +76,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
         return print(&object.to_string());
     }
     let written = args.out.as_ref().map(|out| format!("\n{}", out.display()));
-    let text = to_text(&summary, &model, held_out.as_ref());
+    let text = to_text(&summary, &model);
     print(&(text + &written.unwrap_or_default()))?;
     print(&format!("\n{}", text::verdict(&verdict)))?;
     for advice in &advice {
@@ -138,30 +137,21 @@ fn unclear(args: &args::Begin, roles: &Roles) -> Box<dyn Error> {
     )))
 }
 
-/// A fit that is tested on a fifth of the branches, where there are enough of them.
-fn fit(recordings: &[Recording]) -> Result<(Model, Option<HeldOut>)> {
+/// A fit as `hysteron fit` makes it without options.
+fn fit(recordings: &[Recording]) -> Result<Model> {
     let bar = progress::stages();
     let report = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
-    let fit = Fit::new().progress(Progress::new(&report));
-    let fifth = HoldOut::Branches(0.2);
-    let found = match recordings
-        .iter()
-        .all(|recording| recording.split(&fifth).is_ok())
-    {
-        true => {
-            let (model, held_out) = fit_holding_out(&fit, recordings, &fifth)?;
-            (model, Some(held_out))
-        }
-        false => (fit.run(recordings)?, None),
-    };
+    let model = Fit::new()
+        .progress(Progress::new(&report))
+        .run(recordings)?;
     bar.finish_and_clear();
-    Ok(found)
+    Ok(model)
 }
 
-fn to_text(summary: &RecordingSummary, model: &Model, held_out: Option<&HeldOut>) -> String {
+fn to_text(summary: &RecordingSummary, model: &Model) -> String {
     let mut lines = vec![format!(
         "{} samples, {} reversals of the input, {} of them larger than 1 % of its range",
         summary.samples, summary.input.reversals_of_any_size, summary.input.reversals,
@@ -174,15 +164,10 @@ fn to_text(summary: &RecordingSummary, model: &Model, held_out: Option<&HeldOut>
             fit.nrmse_percent,
         ));
     }
-    lines.push(match held_out {
-        Some(held_out) => hold_out::to_text(held_out, model),
-        None => "there are too few branches to hold some out: test the model on another recording"
-            .into(),
-    });
     lines.join("\n")
 }
 
-fn commands(args: &args::Begin, columns: Columns<'_>, held_out: bool) -> Vec<String> {
+fn commands(args: &args::Begin, columns: Columns<'_>, prepared: bool) -> Vec<String> {
     let file = shell_word(&args.file.display().to_string());
     let mut named = format!(
         "--input {} --output {}",
@@ -197,13 +182,11 @@ fn commands(args: &args::Begin, columns: Columns<'_>, held_out: bool) -> Vec<Str
     if args.repair.is_asked() {
         named += " --repair";
     }
-    let held_out = if held_out {
-        " --hold-out branches:20%"
-    } else {
-        ""
-    };
+    if prepared {
+        named += " --prepare";
+    }
     let mut commands = vec![
-        format!("hysteron fit {file} {named}{held_out} -o model.json"),
+        format!("hysteron fit {file} {named} -o model.json"),
         format!("hysteron evaluate model.json {file} {named} --report report"),
         "hysteron export c model.json -o model-c".to_owned(),
     ];

@@ -130,7 +130,7 @@ pub(crate) fn evaluate<'py>(
     let found = detached(py, || hysteron::evaluate_from(model, recordings, start)).raise()?;
     let dict = PyDict::new(py);
     dict.set_item("forward", to_python(py, &found.forward)?)?;
-    let verdict = Verdict::of_evaluation(recordings, &found).raise()?;
+    let verdict = Verdict::of_evaluation(model, recordings, &found).raise()?;
     dict.set_item("verdict", to_python(py, &verdict)?)?;
     dict.set_item("clipped", found.clipped)?;
     dict.set_item("estimated_from", found.estimated_from)?;

@@ -3,6 +3,7 @@
 #[cfg(feature = "studio")]
 use super::common::Memory;
 use super::common::{Force, Json, Repair};
+use super::prepare::PrepareFirst;
 use super::value::up_to;
 use clap::Args;
 use std::path::PathBuf;
@@ -51,4 +52,6 @@ pub(crate) struct Begin {
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) json: Json,
+    #[command(flatten)]
+    pub(crate) prepare: PrepareFirst,
 }

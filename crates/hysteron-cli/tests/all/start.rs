@@ -33,15 +33,9 @@ fn a_file_alone_gives_a_fit_and_commands_that_run() {
     assert_eq!(found["roles"]["input"], "temperature [degC]");
     assert_eq!(found["roles"]["output"], "lift [mm]");
     assert_eq!(found["roles"]["time"], "time [s]");
-    let held_out = found["hold_out"]["model"]["nrmse_percent"]
-        .as_f64()
-        .unwrap();
-    assert!(
-        held_out
-            < found["hold_out"]["rivals"][0]["nrmse_percent"]
-                .as_f64()
-                .unwrap()
-    );
+    let verdict = &found["verdict"];
+    assert_eq!(verdict["basis"], "branches_left_out");
+    assert!(verdict["percent"].as_f64().unwrap() < verdict["rival"][1].as_f64().unwrap());
     // Each command is one that the shell and hysteron take.
     let commands = found["commands"].as_array().unwrap();
     let runs = commands.iter().map(|command| command.as_str().unwrap());

@@ -62,7 +62,7 @@ impl<'a> View<'a> {
                 found,
             });
         }
-        let verdict = Verdict::of_evaluation(recordings, evaluation).ok();
+        let verdict = Verdict::of_evaluation(model, recordings, evaluation).ok();
         let source = Source::new(model);
         let (time, time_label) = clock(&recording);
         let time = time.into_owned().into();

@@ -6,9 +6,8 @@ use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Outlier, Solver, Start, Surroundings};
 use crate::recording::{Quantity, Recording};
 use crate::remedy::{Remedy, Setting};
-use crate::series::lost::wrong;
+use crate::rivals::wins;
 use crate::series::noise::noise;
-use crate::series::spikes::DEVIATIONS;
 use crate::series::{branch_spans, usual_tolerance};
 use std::fmt;
 
@@ -143,6 +142,12 @@ impl fmt::Display for Advice {
 }
 
 impl Advice {
+    /// Whether it warns of readings that [`crate::prepare`] mends, where that helps.
+    #[must_use]
+    pub fn is_cured_by_preparation(&self) -> bool {
+        matches!(self, Self::Spikes { .. } | Self::FalseReversals { .. })
+    }
+
     /// What may help.
     #[must_use]
     pub fn remedy(&self) -> Remedy {
@@ -199,9 +204,14 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         let outside = positions.iter().filter(|x| plane.clipped(**x).is_some());
         inputs += outside.count();
         samples += seen.len();
-        // A load that changes moves the output by itself, so the test says nothing then.
-        if model.load.is_none() {
-            against = against.max(way_against_input(&seen, model.sign())?);
+        // A load that changes moves the output by itself, and so does what comes late: the test says
+        // nothing then. Nor does a wrong reading.
+        if model.load.is_none() && !model.without_body().is_timed() {
+            let wrong = recording.wrong_readings();
+            let is_right = |n: usize| wrong.iter().all(|found| found.binary_search(&n).is_err());
+            if let Some(right) = seen.only(is_right) {
+                against = against.max(way_against_input(&right, model.sign())?);
+            }
         }
     }
     let mut advice = Vec::new();
@@ -265,8 +275,7 @@ fn spikes(recording: &Recording, number: usize, outliers: &[Outlier]) -> Vec<Adv
         let mut outliers = outliers.iter();
         outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
     };
-    let input = wrong(&recording.input, Some(&recording.output), DEVIATIONS, true);
-    let mut output = wrong(&recording.output, None, DEVIATIONS, true);
+    let [input, mut output] = recording.wrong_readings();
     output.retain(|sample| !is_outlier(*sample));
     let of = |found: Vec<usize>, quantity: &Quantity| {
         found.first().map(|first| Advice::Spikes {
@@ -297,12 +306,4 @@ fn false_reversals(recording: &Recording) -> Option<Advice> {
     let tolerance = usual_tolerance(input).max(6.0 * noise);
     let real = branch_spans(input, tolerance).count();
     (all > FALSE * real && noise > 0.0).then_some(Advice::FalseReversals { all, real, noise })
-}
-
-/// A rival wins where it errs clearly less. An error below this, in percent of the range, is no
-/// matter.
-const SMALL: f64 = 0.05;
-
-fn wins(rival: f64, model: f64) -> bool {
-    model > SMALL && rival < 0.95 * model
 }

@@ -26,7 +26,9 @@ pub use split::{HoldOut, Split};
 pub(crate) use units::Measures;
 
 use crate::error::{Error, Place, Result};
+use crate::series::lost::wrong;
 use crate::series::range;
+use crate::series::spikes::DEVIATIONS;
 use std::path::PathBuf;
 
 /// A physical quantity: its name and, if known, its unit.
@@ -224,6 +226,13 @@ impl Recording {
     #[must_use]
     pub fn ranges(&self) -> ((f64, f64), (f64, f64)) {
         (range(&self.input), range(&self.output))
+    }
+
+    /// The samples whose input stands out from its neighbours or was held, and those whose output
+    /// does, ascending.
+    pub(crate) fn wrong_readings(&self) -> [Vec<usize>; 2] {
+        let input = wrong(&self.input, Some(&self.output), DEVIATIONS, true);
+        [input, wrong(&self.output, None, DEVIATIONS, true)]
     }
 
     /// Checks the samples. Every function of this crate that takes a recording makes this check.

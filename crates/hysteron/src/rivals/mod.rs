@@ -90,3 +90,11 @@ impl Rival {
         self.at_loads.predict(recording)
     }
 }
+
+/// An error below this, in percent of the range, is no matter.
+pub(crate) const SMALL: f64 = 0.05;
+
+/// Whether a rival errs clearly less than a model; errors in percent.
+pub(crate) fn wins(rival: f64, model: f64) -> bool {
+    model > SMALL && rival < 0.95 * model
+}

@@ -16,6 +16,13 @@ pub enum Cause {
     },
     /// A few numbers explain much of the error.
     Part(ErrorPart),
+    /// Much of the error is in readings that stand out from their neighbours, or were held.
+    Readings {
+        /// Their share of the squared error, from 0 to 1.
+        share: f64,
+        /// Their number.
+        samples: usize,
+    },
     /// The model's band, which should hold 95 % of the samples, holds much less of them.
     Elsewhere {
         /// What it holds, in percent.
@@ -40,6 +47,11 @@ pub enum Cause {
         /// Their number.
         branches: usize,
     },
+    /// Loads that were left out are predicted badly, so others may be as well.
+    LoadsLeftOut {
+        /// The error there, in percent of the range of the output at such a load.
+        percent: f64,
+    },
     /// The model cannot follow what is more than noise.
     Misfit {
         /// The part of the error that is no noise, in the output's unit.
@@ -55,7 +67,7 @@ pub(super) const OUTSIDE: f64 = 0.2;
 /// Branches held out of recordings with enough of them keep above 90 (docs/measured/coverage.md).
 const BELONGS: f64 = 80.0;
 /// A part of this share is worth a sentence.
-const WORTH: f64 = 0.25;
+pub(super) const WORTH: f64 = 0.25;
 /// From this share of noise on, in the squared error, noise is what is behind it.
 const NOISY: f64 = 0.5;
 /// Fewer inputs outside the plane are the noise at its ends.
@@ -84,10 +96,12 @@ impl Cause {
                 PartKind::Late => "late",
                 PartKind::Drift => "drift",
             },
+            Self::Readings { .. } => "readings",
             Self::Elsewhere { .. } => "elsewhere",
             Self::Rival { .. } => "rival",
             Self::Noise { .. } => "noise",
             Self::FewBranches { .. } => "few_branches",
+            Self::LoadsLeftOut { .. } => "loads_left_out",
             Self::Misfit { .. } => "misfit",
         }
     }
@@ -96,9 +110,11 @@ impl Cause {
     pub(super) fn weight(&self) -> f64 {
         match self {
             Self::Outside { share } if *share > OUTSIDE => 3.0,
+            Self::Readings { share, .. } => 1.0 + share,
             Self::Part(part) => 1.0 + part.share,
             Self::Rival { .. } => 0.9,
             Self::Elsewhere { .. } => 0.85,
+            Self::LoadsLeftOut { .. } => 0.82,
             Self::FewBranches { .. } => 0.8,
             Self::Outside { share } if *share > SEEN => 0.3,
             Self::Noise { .. } => Self::NOISE,
@@ -108,30 +124,19 @@ impl Cause {
     }
 }
 
-/// What the record of a fit says, of an error in `percent` beside that of the best `rival`.
-pub(super) fn of_record(
-    fit: &FitSummary,
-    percent: Option<f64>,
-    rival: Option<&(String, f64)>,
-    on_others: bool,
-) -> Vec<Cause> {
-    let mut causes = Vec::new();
-    if let (Some((name, rival)), Some(percent)) = (rival, percent)
-        && *rival < percent
-    {
-        causes.push(Cause::Rival {
-            name: name.clone(),
-            percent: *rival,
-        });
-    }
-    if let Some(confidence) = &fit.confidence
-        && confidence.branches < FEW
-        && !on_others
-    {
-        let branches = confidence.branches;
-        causes.push(Cause::FewBranches { branches });
-    }
-    causes
+/// What the record of a fit says.
+pub(super) fn of_record(fit: &FitSummary, on_others: bool) -> Vec<Cause> {
+    let loads = fit.other.get("load");
+    let percent = loads.and_then(|found| found["left_out_percent"].as_f64());
+    let loads = percent.filter(|percent| *percent > super::USABLE && !on_others);
+    let few = fit
+        .confidence
+        .as_ref()
+        .map(|confidence| confidence.branches);
+    let few = few.filter(|branches| *branches < FEW && !on_others);
+    let loads = loads.map(|percent| Cause::LoadsLeftOut { percent });
+    let few = few.map(|branches| Cause::FewBranches { branches });
+    loads.into_iter().chain(few).collect()
 }
 
 /// The inputs of an evaluation that the model does not know.

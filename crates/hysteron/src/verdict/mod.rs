@@ -1,13 +1,16 @@
 //! Whether a model is good enough, for what, why it is not better, and what to do next.
 //!
 //! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for;
-//! `parts` tells what an error consists of, `cause` what is behind it, and `words` says all of it in
-//! sentences. `serial` writes it.
+//! `tested` reads from the record of a fit what it was tested on; `parts` tells what an error
+//! consists of, `readings` which of it is in readings that are wrong, and `cause` what is behind it;
+//! `words` says all of it in sentences. `serial` writes it.
 
 mod cause;
 mod grade;
 mod parts;
+mod readings;
 mod serial;
+mod tested;
 mod words;
 
 pub use cause::Cause;
@@ -17,13 +20,13 @@ pub use parts::{ErrorPart, PartKind, error_parts};
 use crate::error::{Place, Result};
 use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::Forward;
-use crate::hold_out::{HeldOut, PART};
-use crate::model::{Criterion, FitSummary, Model, Start};
+use crate::model::{Model, Outlier, Start};
 use crate::recording::{Quantity, Recording, no_recordings};
-use crate::rivals::{Rival, RivalKind};
+use crate::rivals::{Rival, RivalKind, SMALL, wins};
 use crate::series::Errors;
 use crate::series::noise::noise;
 use serde::Serialize;
+use tested::{Tested, on_others};
 
 /// The sample with the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -80,8 +83,13 @@ pub struct Verdict {
     pub rival: Option<(String, f64)>,
     /// Why the model is not better, the weightiest first.
     pub causes: Vec<Cause>,
-    /// Where it errs most; `None` where no recording was looked at.
+    /// Where it errs most; `None` where no recording was looked at. Readings that the fit took for
+    /// outliers do not count.
     pub worst: Option<Worst>,
+    /// Whether the recordings have a time.
+    pub has_time: bool,
+    /// Whether the recordings have a load.
+    pub has_load: bool,
     /// The input.
     pub input: Quantity,
     /// The output.
@@ -94,9 +102,6 @@ const GOOD: f64 = 1.0;
 const OF_NOISE: f64 = 1.5;
 /// Errors up to this, in percent, are usable.
 const USABLE: f64 = 5.0;
-/// A fit whose error on what it saw is so many times that on what was left out has a stage that was
-/// not there when something was left out.
-const BEYOND: f64 = 1.5;
 /// The rival of an evaluation.
 const LINE: &str = "a straight line fitted to this very recording";
 /// The inverse of so many samples is tested. More would cost as much as some fits.
@@ -114,7 +119,12 @@ impl Verdict {
 
     fn unjudged(model: &Model) -> Option<Self> {
         let fit = model.fit.as_ref()?;
-        let (basis, rmse, percent, rival) = tested(fit);
+        let Tested {
+            basis,
+            rmse,
+            percent,
+            rival,
+        } = Tested::of(fit);
         Some(Self {
             grade: Grade::Untested,
             basis,
@@ -122,9 +132,11 @@ impl Verdict {
             percent,
             noise: fit.confidence.as_ref().map_or(0.0, |found| found.sensor),
             inverse: None,
-            causes: cause::of_record(fit, percent, rival.as_ref(), on_others(fit)),
+            causes: cause::of_record(fit, on_others(fit)),
             rival,
             worst: None,
+            has_time: false,
+            has_load: model.load.is_some(),
             input: model.input.clone(),
             output: model.output.clone(),
         })
@@ -137,45 +149,40 @@ impl Verdict {
     /// As [`crate::evaluate`].
     pub fn of_fit(model: &Model, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Self> {
         let recordings = recordings.as_ref();
-        let Some(mut verdict) = Self::unjudged(model) else {
-            let evaluation = evaluate_from(model, recordings, Start::Fitted)?;
-            return Self::of_evaluation(recordings, &evaluation);
-        };
         let samples: usize = recordings.iter().map(Recording::len).sum();
         let first = recordings.first().ok_or_else(no_recordings)?;
         let shortened;
-        let looked_at = match samples > TESTED {
+        let looked_at = match samples > TESTED && model.fit.is_some() {
             true => {
                 shortened = first.part(0..TESTED.min(first.len()));
                 std::slice::from_ref(&shortened)
             }
             false => recordings,
         };
-        let evaluation = evaluate_from(model, looked_at, Start::Fitted)?;
-        verdict.inverse = of_inverse(&evaluation);
-        verdict.noise = verdict.noise.max(noise_of(looked_at));
-        verdict.worst = worst(looked_at, &evaluation.output_model);
-        verdict
-            .causes
-            .extend(cause::of_parts(looked_at, &evaluation.output_model, true));
-        verdict.judge();
-        Ok(verdict)
+        let mut evaluation = evaluate_from(model, looked_at, Start::Fitted)?;
+        // A part of what was fitted was fitted.
+        evaluation.was_fitted |= model.fit.is_some();
+        Self::of_evaluation(model, looked_at, &evaluation)
     }
 
-    /// The verdict on a model that was evaluated on `recordings`. The rival is a straight line
-    /// fitted to these recordings themselves, which favours it. An evaluation that kept no series
+    /// The verdict on a model that was evaluated on `recordings`. If it was fitted to them, what its
+    /// fit was tested on tells. If not, the rival is a straight line fitted to these recordings
+    /// themselves, which favours it. An evaluation that kept no series
     /// ([`crate::evaluate_errors`]) tells neither the worst sample nor the parts of the error.
     ///
     /// # Errors
     /// [`crate::Error::Recording`] for an invalid recording, or none.
     pub fn of_evaluation(
+        model: &Model,
         recordings: &(impl AsRef<[Recording]> + ?Sized),
         evaluation: &Evaluation,
     ) -> Result<Self> {
         let run = (evaluation.forward, evaluation.was_fitted);
-        let mut verdict = Self::of_run(recordings.as_ref(), &evaluation.output_model, run)?;
+        let mut verdict = Self::of_run(model, recordings.as_ref(), &evaluation.output_model, run)?;
         verdict.causes.extend(cause::outside(evaluation));
-        verdict.causes.extend(cause::elsewhere(evaluation));
+        if !evaluation.was_fitted {
+            verdict.causes.extend(cause::elsewhere(evaluation));
+        }
         verdict.inverse = of_inverse(evaluation);
         verdict.judge();
         Ok(verdict)
@@ -186,45 +193,66 @@ impl Verdict {
     /// # Errors
     /// [`crate::Error::Recording`] for an invalid recording, or none.
     pub fn of_forward(
+        model: &Model,
         recordings: &(impl AsRef<[Recording]> + ?Sized),
         forward: &Forward,
     ) -> Result<Self> {
         let run = (forward.errors, forward.was_fitted);
-        let mut verdict = Self::of_run(recordings.as_ref(), &forward.output_model, run)?;
+        let mut verdict = Self::of_run(model, recordings.as_ref(), &forward.output_model, run)?;
         verdict.judge();
         Ok(verdict)
     }
 
     /// What the outputs of a model over recordings say; not judged yet.
     fn of_run(
+        model: &Model,
         recordings: &[Recording],
         output: &[f64],
         (errors, was_fitted): (Errors, bool),
     ) -> Result<Self> {
         let first = recordings.first().ok_or_else(no_recordings)?;
-        let line = Rival::fit(RivalKind::Line, recordings)?;
-        let each = recordings.iter().map(|recording| line.predict(recording));
-        let predicted = each.collect::<Result<Vec<_>>>()?.concat();
-        let measured = recordings.iter().flat_map(|recording| &recording.output);
-        let measured: Vec<f64> = measured.copied().collect();
-        let line = Errors::between(&measured, &predicted, |_| true);
-        let line = line.and_then(|errors| errors.nrmse_percent);
-        Ok(Self {
-            grade: Grade::Untested,
-            basis: match was_fitted {
-                true => Basis::Fitted,
-                false => Basis::OtherRecording,
+        let outliers = match (was_fitted, &model.fit) {
+            (true, Some(fit)) => &fit.outliers[..],
+            _ => &[],
+        };
+        // From another start the model errs by what its fit never saw.
+        let rmse = rmse_without(recordings, output, outliers).unwrap_or(errors.rmse);
+        let is_as_fitted = |record: &Self| rmse <= tested::BEYOND * record.rmse;
+        let record = Self::unjudged(model).filter(|_| was_fitted);
+        let mut verdict = match record.filter(is_as_fitted) {
+            Some(record) => record,
+            None => Self {
+                grade: Grade::Untested,
+                basis: match was_fitted {
+                    true => Basis::Fitted,
+                    false => Basis::OtherRecording,
+                },
+                rmse: errors.rmse,
+                percent: errors.nrmse_percent,
+                noise: 0.0,
+                inverse: None,
+                rival: line(recordings)?,
+                causes: Vec::new(),
+                worst: None,
+                has_time: false,
+                has_load: false,
+                input: first.input_quantity.clone(),
+                output: first.output_quantity.clone(),
             },
-            rmse: errors.rmse,
-            percent: errors.nrmse_percent,
-            noise: noise_of(recordings),
-            inverse: None,
-            rival: line.map(|percent| (LINE.to_owned(), percent)),
-            causes: cause::of_parts(recordings, output, was_fitted),
-            worst: worst(recordings, output),
-            input: first.input_quantity.clone(),
-            output: first.output_quantity.clone(),
-        })
+        };
+        verdict.noise = verdict.noise.max(noise_of(recordings));
+        verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
+        verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());
+        let percent = verdict.percent.unwrap_or(f64::INFINITY);
+        if percent > SMALL {
+            let parts = cause::of_parts(recordings, output, was_fitted);
+            verdict.causes.extend(parts);
+        }
+        if percent > GOOD {
+            verdict.causes.extend(readings::cause(recordings, output));
+        }
+        verdict.worst = worst(recordings, output, outliers);
+        Ok(verdict)
     }
 
     /// Finds the grade and puts the causes in order.
@@ -241,17 +269,25 @@ impl Verdict {
             _ => Grade::Poor,
         };
         let rival = self.rival.as_ref();
-        let rival_wins = rival.is_some_and(|(_, rival)| *rival < percent);
+        let better = rival.filter(|(_, rival)| wins(*rival, percent));
+        let rival_wins = better.is_some();
+        self.causes
+            .extend(better.map(|(name, percent)| Cause::Rival {
+                name: name.clone(),
+                percent: *percent,
+            }));
         let outside = self
             .causes
             .iter()
             .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
-        let few = self.causes.iter().any(|cause| {
-            matches!(cause, Cause::FewBranches { branches } if *branches <= cause::TWO_LOOPS)
+        let guessed = self.causes.iter().any(|cause| match cause {
+            Cause::FewBranches { branches } => *branches <= cause::TWO_LOOPS,
+            Cause::LoadsLeftOut { .. } => true,
+            _ => false,
         });
         self.grade = match (by_error, rival_wins) {
             _ if outside => Grade::Poor,
-            (Grade::Good, _) if few => Grade::Usable,
+            (Grade::Good, _) if guessed => Grade::Usable,
             (Grade::Good, true) => Grade::Usable,
             (Grade::Usable, true) => Grade::Poor,
             (grade, _) => grade,
@@ -260,7 +296,9 @@ impl Verdict {
         if self.basis == Basis::Fitted && self.grade != Grade::Poor {
             self.grade = Grade::Untested;
         }
-        self.causes.extend(cause::of_noise(self.noise, self.rmse));
+        if percent > SMALL {
+            self.causes.extend(cause::of_noise(self.noise, self.rmse));
+        }
         self.causes
             .sort_by(|a, b| b.weight().total_cmp(&a.weight()));
     }
@@ -271,17 +309,51 @@ fn of_inverse(evaluation: &Evaluation) -> Option<Errors> {
     evaluation.inverse.as_ref().ok()?.hold.moving
 }
 
-/// Where the outputs of a model over recordings err most.
-fn worst(recordings: &[Recording], modelled: &[f64]) -> Option<Worst> {
+/// A straight line fitted to these recordings, and its error in percent.
+fn line(recordings: &[Recording]) -> Result<Option<(String, f64)>> {
+    let line = Rival::fit(RivalKind::Line, recordings)?;
+    let each = recordings.iter().map(|recording| line.predict(recording));
+    let predicted = each.collect::<Result<Vec<_>>>()?.concat();
+    let measured = recordings.iter().flat_map(|recording| &recording.output);
+    let measured: Vec<f64> = measured.copied().collect();
+    let errors = Errors::between(&measured, &predicted, |_| true);
+    let percent = errors.and_then(|errors| errors.nrmse_percent);
+    Ok(percent.map(|percent| (LINE.to_owned(), percent)))
+}
+
+/// The errors of the outputs of a model over recordings, and where they are, but for `outliers`.
+fn errors<'a>(
+    recordings: &'a [Recording],
+    modelled: &'a [f64],
+    outliers: &'a [Outlier],
+) -> impl Iterator<Item = (f64, usize, usize, f64)> + 'a {
     let each = recordings.iter().enumerate();
     let samples = each.flat_map(|(n, recording)| {
         let measured = recording.output.iter().enumerate();
         measured.map(move |(sample, y)| (n, sample, *y))
     });
+    let is_outlier = move |place: (usize, usize)| {
+        let mut outliers = outliers.iter();
+        outliers.any(|outlier| (outlier.recording, outlier.sample) == place)
+    };
     let errors = samples.zip(modelled);
-    let errors =
-        errors.map(|((n, sample, y), modelled)| ((y - modelled).abs(), n, sample, modelled));
-    let (_, number, sample, &modelled) = errors.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let errors = errors.filter(move |((n, sample, _), _)| !is_outlier((*n, *sample)));
+    errors.map(|((n, sample, y), modelled)| ((y - modelled).abs(), n, sample, *modelled))
+}
+
+/// The error without `outliers`; `None` without a series.
+fn rmse_without(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Option<f64> {
+    let squares = errors(recordings, modelled, outliers).map(|(error, ..)| error * error);
+    let (count, sum) = squares.fold((0.0, 0.0), |(count, sum), square| {
+        (count + 1.0, sum + square)
+    });
+    (count > 0.0).then(|| f64::sqrt(sum / count))
+}
+
+/// Where a model errs most.
+fn worst(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Option<Worst> {
+    let errors = errors(recordings, modelled, outliers);
+    let (_, number, sample, modelled) = errors.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let recording = &recordings[number];
     Some(Worst {
         recording: number,
@@ -292,47 +364,6 @@ fn worst(recordings: &[Recording], modelled: &[f64]) -> Option<Worst> {
         measured: recording.output[sample],
         modelled,
     })
-}
-
-/// Whether the fit was tested on another recording, and not on a part of one that it saw.
-fn on_others(fit: &FitSummary) -> bool {
-    fit.other.contains_key("hold_out") && !fit.other.contains_key(PART)
-}
-
-/// What the fit was tested on, its error there and that of the best rival.
-fn tested(fit: &FitSummary) -> (Basis, f64, Option<f64>, Option<(String, f64)>) {
-    let best =
-        |rivals: &mut dyn Iterator<Item = (String, f64)>| rivals.min_by(|a, b| a.1.total_cmp(&b.1));
-    if let Some(held_out) = fit.other.get("hold_out").and_then(HeldOut::from_record) {
-        let mut rivals = held_out
-            .rivals
-            .iter()
-            .filter_map(|rival| Some((rival.name.to_owned(), rival.errors.nrmse_percent?)));
-        let model = held_out.model;
-        return (
-            Basis::HeldOut,
-            model.rmse,
-            model.nrmse_percent,
-            best(&mut rivals),
-        );
-    }
-    match &fit.validation {
-        Some(found) if found.criterion == Criterion::LeftOut && fit.rmse <= BEYOND * found.rmse => {
-            let rivals = found.rivals.iter();
-            let mut rivals = rivals.map(|rival| (rival.name.clone(), rival.nrmse_percent));
-            let basis = match found.whole_branches {
-                true => Basis::BranchesLeftOut,
-                false => Basis::PartsLeftOut,
-            };
-            (
-                basis,
-                found.rmse,
-                Some(found.nrmse_percent),
-                best(&mut rivals),
-            )
-        }
-        _ => (Basis::Fitted, fit.rmse, Some(fit.nrmse_percent), None),
-    }
 }
 
 /// The white noise of the readings, as a root mean square over recordings.

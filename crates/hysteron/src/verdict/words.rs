@@ -1,6 +1,5 @@
 //! A verdict in sentences.
 
-use super::cause::OUTSIDE;
 use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
 use crate::model::band_name;
@@ -11,6 +10,13 @@ use std::fmt;
 /// No session changes a gain so much: another unit or another device does.
 fn is_odd(gain: &ErrorPart) -> bool {
     !(-0.6..=1.5).contains(&gain.size)
+}
+
+/// What helps a model that cannot follow.
+const MORE: &str = "record more reversals inside the range (design makes such an input)";
+
+fn is_few(cause: &Cause) -> bool {
+    matches!(cause, Cause::FewBranches { .. })
 }
 
 impl Grade {
@@ -79,7 +85,6 @@ impl Verdict {
             .as_ref()
             .map(|(name, rival)| format!("; {name} errs {rival:.2} %"));
         // Where a branch is the only one of its kind, leaving it out tells nothing of a new one.
-        let is_few = |cause: &Cause| matches!(cause, Cause::FewBranches { .. });
         let within = match self.causes.iter().any(is_few) {
             true => " within this recording, no promise for another",
             false => "",
@@ -97,6 +102,15 @@ impl Verdict {
             Cause::Outside { share } => format!(
                 "{:.1} % of the inputs are outside the range that the model knows",
                 100.0 * share
+            ),
+            Cause::Readings { share, samples } => format!(
+                "{:.0} % of the squared error is in {samples} readings that stand out from their \
+                 neighbours or were held",
+                100.0 * share
+            ),
+            Cause::LoadsLeftOut { percent } => format!(
+                "loads that were left out are predicted to {percent:.2} % of their range: at loads \
+                 that were not recorded it is a guess"
             ),
             Cause::Elsewhere { coverage, sessions } => format!(
                 "only {coverage:.1} % of the samples are inside the {}: it does not belong to \
@@ -183,16 +197,25 @@ impl Verdict {
         let weightiest = self.causes.first();
         let is_good = self.grade == Grade::Good;
         match weightiest {
-            _ if self.basis == Basis::Fitted && self.grade == Grade::Untested => Remedy::new(
-                "evaluate it on another recording, or hold a part out of the fit with {}",
-                [Setting::any("hold-out")],
-            ),
+            _ if self.basis == Basis::Fitted && self.grade == Grade::Untested => {
+                match self.causes.iter().any(is_few) {
+                    true => Remedy::new(
+                        "evaluate it on another recording: this one has too few branches to hold \
+                         some out",
+                        [],
+                    ),
+                    false => Remedy::new(
+                        "evaluate it on another recording, or hold a part out of the fit with {}",
+                        [Setting::any("hold-out")],
+                    ),
+                }
+            }
             _ if is_good && self.basis != Basis::OtherRecording => Remedy::new(
                 "evaluate it on another recording: the same actuator on another day may differ",
                 [],
             ),
             _ if is_good => Remedy::new("use it: invert, control, export", []),
-            Some(Cause::Outside { share }) if *share > OUTSIDE => Remedy::new(
+            Some(Cause::Outside { .. }) => Remedy::new(
                 "fit a recording that covers this range, or check the unit of the input",
                 [],
             ),
@@ -204,6 +227,14 @@ impl Verdict {
                 PartKind::Offset | PartKind::Gain | PartKind::Shift => Remedy::new(
                     "adapt the model to this session (adapt), and compare again",
                     [],
+                ),
+                PartKind::Late if self.has_time => Remedy::new(
+                    "let the fit look for what comes late: {}, {}, or {} for a drive that heats",
+                    [
+                        Setting::word("lag", "auto"),
+                        Setting::word("creep", "auto"),
+                        Setting::on("thermal"),
+                    ],
                 ),
                 PartKind::Late => Remedy::new(
                     "name the time and let the fit look for dynamics: {}, {}, {} for a drive that \
@@ -224,11 +255,28 @@ impl Verdict {
                 "average the readings, or use {}, whose steps are taken only where they help",
                 [Setting::on("prepare")],
             ),
-            _ => Remedy::new(
-                "record more reversals inside the range (design makes such an input), or name what \
-                 else moves the output: {}, {}",
-                [Setting::any("load"), Setting::any("time")],
+            Some(Cause::Readings { .. }) => Remedy::new(
+                "use {}, which replaces them if that helps",
+                [Setting::on("prepare")],
             ),
+            Some(Cause::LoadsLeftOut { .. }) => {
+                Remedy::new("record loads between those that there are", [])
+            }
+            _ => {
+                let words = |more| format!("{MORE}{more}");
+                let [load, time] = [Setting::any("load"), Setting::any("time")];
+                match (self.has_load, self.has_time) {
+                    (false, false) => Remedy::new(
+                        words(", or name what else moves the output: {}, {}"),
+                        [load, time],
+                    ),
+                    (false, true) => {
+                        Remedy::new(words(", or name what else moves the output: {}"), [load])
+                    }
+                    (true, false) => Remedy::new(words(", or name the time: {}"), [time]),
+                    (true, true) => Remedy::new(MORE, []),
+                }
+            }
         }
     }
 }

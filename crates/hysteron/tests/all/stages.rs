@@ -1,9 +1,9 @@
 //! The whole model: its stages in every order of calls, its inverse, its file, and what a fit finds.
 
 use hysteron::{
-    Auto, Choice, CreepTerm, Fit, FitOptions, FittedStart, HoldOut, LoadLaw, Model, Operator,
-    Plane, Policy, Recording, Sample, Sign, Spacing, Start, Status, Surroundings, Target, Wanted,
-    evaluate, evaluate_from, fit_holding_out,
+    Auto, Basis, Choice, CreepTerm, Fit, FitOptions, FittedStart, Grade, HoldOut, LoadLaw, Model,
+    Operator, Plane, Policy, Recording, Sample, Sign, Spacing, Start, Status, Surroundings, Target,
+    Verdict, Wanted, evaluate, evaluate_from, fit_holding_out,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -702,5 +702,34 @@ fn the_page_has_the_constants_that_stages_declare() {
             "docs/constants.md does not name {}",
             stage.name
         );
+    }
+}
+
+/// A lag of half a sampling step to sixty of them is found, and the levels that are chosen are those
+/// of the output before it: the model is as good as that of the same plant without a lag.
+#[test]
+fn a_lag_of_any_length_is_found() {
+    let plane = Plane::new(-0.9, 1.0, 20).unwrap();
+    let weights = (0..210).map(|n| f64::from(n % 7)).collect();
+    let plant = Model::new(Operator::Mkp, plane, weights, 3.0, Sign::Positive).unwrap();
+    let time: Vec<f64> = (0..3000).map(|n| 0.01 * f64::from(n)).collect();
+    let wave = |t: &f64| (2.1 * t).sin() * (0.43 * t).cos();
+    let input: Vec<f64> = time.iter().map(wave).collect();
+    for lag in [0.0, 0.02, 0.1, 0.6] {
+        let plant = plant.clone().with_after(&[], lag).unwrap();
+        let around = Surroundings {
+            time: Some(&time),
+            load: None,
+        };
+        let output = plant.simulate_in(&input, around).unwrap();
+        let mut recording = Recording::new(input.clone(), output).unwrap();
+        recording.time = Some(time.clone());
+        let model = Fit::new().bootstrap(0).lag(Auto).run(&recording).unwrap();
+        // A plane of other levels takes some of its width for a lag, or gives some.
+        let found = model.lag();
+        assert!((found - lag).abs() <= 0.1 * lag, "{found} for {lag}");
+        let verdict = Verdict::of_fit(&model, &recording).unwrap();
+        assert_eq!(verdict.grade, Grade::Good, "{lag}: {verdict}");
+        assert_eq!(verdict.basis, Basis::BranchesLeftOut, "{lag}");
     }
 }

@@ -36,7 +36,7 @@ fn recording(model: &Model, change: impl Fn(usize, f64) -> f64) -> Recording {
 fn judged(model: &Model, recording: &Recording) -> (Verdict, Evaluation) {
     let evaluation = evaluate(model, recording).unwrap();
     (
-        Verdict::of_evaluation(recording, &evaluation).unwrap(),
+        Verdict::of_evaluation(model, recording, &evaluation).unwrap(),
         evaluation,
     )
 }
@@ -213,7 +213,7 @@ fn what_was_fitted_is_not_tested_and_a_rival_costs_a_grade() {
     // A plant without hysteresis, slightly off the model's play: a line is better.
     let line = Recording::new(input(900), input(900)).unwrap();
     let run = forward(&fitted, &line, hysteron::Start::Fitted).unwrap();
-    let verdict = Verdict::of_forward(&line, &run).unwrap();
+    let verdict = Verdict::of_forward(&fitted, &line, &run).unwrap();
     let (_, rival) = verdict.rival.clone().unwrap();
     assert!(rival < verdict.percent.unwrap());
     assert_eq!(verdict.grade, Grade::Poor);
@@ -258,10 +258,10 @@ fn an_evaluation_of_errors_alone_has_no_worst_sample() {
     let found = recording(&model, |n, y| y + (n as f64 * 0.3).sin());
     let start = hysteron::Start::On;
     let errors = hysteron::evaluate_errors(&model, &found, start).unwrap();
-    let verdict = Verdict::of_evaluation(&found, &errors).unwrap();
+    let verdict = Verdict::of_evaluation(&model, &found, &errors).unwrap();
     assert_eq!(verdict.worst, None);
     let run = forward(&model, &found, start).unwrap();
-    let whole = Verdict::of_forward(&found, &run).unwrap();
+    let whole = Verdict::of_forward(&model, &found, &run).unwrap();
     assert_eq!((verdict.grade, verdict.rmse), (whole.grade, whole.rmse));
     let worst = whole.worst.unwrap();
     assert_eq!(
@@ -304,5 +304,106 @@ fn a_drift_in_what_was_fitted_is_named() {
                 }
             }
         }
+    }
+}
+
+/// What was fitted says the same wherever it is judged, but not from a start that is another one.
+#[test]
+fn an_evaluation_of_what_was_fitted_is_the_verdict_of_the_fit() {
+    let plant = model(&[0.5; 78]);
+    let mut whole = recording(&plant, |n, y| y + 0.1 * (n as f64 * 0.7).sin());
+    whole.source = Some(hysteron::Source::new("run.csv".into(), "1".repeat(64)));
+    let fit = Fit::new().levels(12).bootstrap(0);
+    let fitted = fit.run(&whole).unwrap();
+    let of_fit = Verdict::of_fit(&fitted, &whole).unwrap();
+    assert_eq!(of_fit.basis, Basis::BranchesLeftOut);
+    let (again, _) = judged(&fitted, &whole);
+    assert_eq!(of_fit, again);
+    let run = forward(&fitted, &whole, hysteron::Start::Fitted).unwrap();
+    let forward = Verdict::of_forward(&fitted, &whole, &run).unwrap();
+    assert_eq!(
+        (forward.grade, forward.percent),
+        (of_fit.grade, of_fit.percent)
+    );
+    let on = hysteron::evaluate_from(&fitted, &whole, hysteron::Start::On).unwrap();
+    let on = Verdict::of_evaluation(&fitted, &whole, &on).unwrap();
+    assert_eq!(on.basis, Basis::Fitted);
+    assert!(on.percent > of_fit.percent);
+}
+
+/// Readings that stand out are named where the error is in them, and what mends them. The worst
+/// sample of a fit is none of its outliers.
+#[test]
+fn wrong_readings_are_named() {
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let truth = model(&weights(&mut rng));
+        let clean = recording(&truth, |_, y| y);
+        let (_, (low, high)) = clean.ranges();
+        let mut places: Vec<usize> = (0..12).map(|_| rng.random_range(20..880)).collect();
+        places.sort_unstable();
+        places.dedup_by(|a, b| *a < *b + 5);
+        let spike = (high - low) * if rng.random() { 1.5 } else { -1.5 };
+        let spiky = recording(&truth, |n, y| match places.contains(&n) {
+            true => y + spike,
+            false => y,
+        });
+        let (verdict, _) = judged(&truth, &spiky);
+        let first = &verdict.causes[0];
+        assert!(
+            matches!(first, Cause::Readings { .. }),
+            "seed {seed}: {first:?}"
+        );
+        assert!(
+            verdict.next().to_string().contains("`prepare`"),
+            "seed {seed}"
+        );
+        let fitted = Fit::new().levels(12).bootstrap(0).run(&spiky).unwrap();
+        let outliers = &fitted.fit.as_ref().unwrap().outliers;
+        assert!(!outliers.is_empty(), "seed {seed}");
+        let worst = Verdict::of_fit(&fitted, &spiky).unwrap().worst.unwrap();
+        let mut outliers = outliers.iter();
+        assert!(
+            outliers.all(|outlier| outlier.sample != worst.sample),
+            "seed {seed}"
+        );
+    }
+}
+
+/// A grade that a rival or the load lowers has its reason, and what is given is not asked for.
+#[test]
+fn a_lowered_grade_has_a_reason_and_no_step_asks_for_what_is_given() {
+    for seed in 0..60 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let truth = model(&weights(&mut rng));
+        let size = rng.random_range(0.0..3.0);
+        let mut found = match seed % 2 {
+            0 => recording(&truth, |n, y| y + size * (n as f64 * 0.37).sin()),
+            _ => Recording::new(input(900), input(900)).unwrap(),
+        };
+        if rng.random() {
+            found.time = Some((0..900).map(f64::from).collect());
+        }
+        if rng.random() {
+            found.load = Some(vec![1.0; 900]);
+        }
+        let (verdict, _) = judged(&truth, &found);
+        let percent = verdict.percent.unwrap();
+        let lowered = match verdict.grade {
+            Grade::Usable => percent <= 1.0,
+            Grade::Poor => percent <= 5.0,
+            _ => false,
+        };
+        assert!(
+            !lowered || !verdict.causes.is_empty(),
+            "seed {seed}: {verdict}"
+        );
+        let next = verdict.next().to_string();
+        assert!(
+            !(verdict.has_time && next.contains("`time`")),
+            "seed {seed}: {next}"
+        );
+        let asks = next.contains("`load`") && !next.contains("with the time as");
+        assert!(!(verdict.has_load && asks), "seed {seed}: {next}");
     }
 }

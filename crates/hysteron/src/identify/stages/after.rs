@@ -2,6 +2,7 @@
 //! were left out.
 
 use crate::error::{Error, Result};
+use crate::identify::choose::Open;
 use crate::identify::options::{Choice, FitOptions};
 use crate::identify::weights::problem::Problem;
 use crate::model::{CreepTerm, Model, Operators, Smooth, StageConstants};
@@ -23,12 +24,25 @@ const BLOCKS: usize = 6;
 /// 13 % on a recording at another frequency.
 const WORTH: f64 = 0.1;
 
-/// Coefficients of creep that are tried, for all terms together, and lags in sampling steps.
+/// Coefficients of creep that are tried, for all terms together.
 const COEFFICIENTS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2];
-const LAGS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+
+/// The shortest lag that is tried, in sampling steps. Each one after it is twice as long.
+const SHORTEST: f64 = 0.5;
+
+/// What is slower than this share of the longest recording is creep.
+const SLOWEST: f64 = 1.0 / 30.0;
 
 /// Time constants that are tried for a single term.
 const SINGLE: usize = 5;
+
+/// Levels on which the constants are found, if their number is left to the data, and the smoothness:
+/// a coarse or smooth plane takes its own width for a lag.
+const FINE: usize = 40;
+const SLIGHT: Smooth = Smooth {
+    along: 1e-9,
+    across: 1e-9,
+};
 
 /// Rounds in which coefficients and time constants are refined, each with a smaller step.
 const REFINED: i32 = 4;
@@ -54,6 +68,7 @@ pub(super) struct Report {
 pub(super) fn find(
     recordings: &[Recording],
     options: &FitOptions,
+    open: Open,
     progress: Progress<'_>,
 ) -> Result<(After, Report)> {
     if let Choice::Fixed(count) = options.creep
@@ -70,44 +85,37 @@ pub(super) fn find(
             "a lag of {lag} s: it must be a finite number from 0 on"
         )));
     }
-    let search = Search::new(recordings, options, progress)?;
-    let without = search.rated(&After::default())?;
-    let lags: Vec<f64> = match options.lag {
-        Choice::Fixed(lag) => vec![lag],
-        Choice::Auto => [0.0]
-            .into_iter()
-            .chain(LAGS.map(|steps| steps * search.step))
-            .collect(),
-    };
+    let search = Search::new(recordings, options, open, progress)?;
+    let without = search.left_out(&After::default())?;
     let counts = match options.creep {
         Choice::Fixed(count) => vec![count],
         Choice::Auto => [0].into_iter().chain(TERMS).collect(),
     };
     // The simpler first. What was asked for is taken with its best constants.
-    let mut best: Option<(After, f64)> = None;
-    for &count in &counts {
-        // A lag that is chosen before creep would stand for it, so the best of each is compared.
-        let mut of_count: Option<(After, f64)> = None;
-        for &lag in &lags {
-            let found = search.creep(count, lag)?;
-            let bar = if lag > 0.0 { 1.0 - WORTH } else { 1.0 };
-            if of_count
-                .as_ref()
-                .is_none_or(|(_, least)| found.1 < bar * least)
-            {
-                of_count = Some(found);
-            }
-        }
-        if let Some(found) = of_count
-            && best
-                .as_ref()
-                .is_none_or(|(_, least)| found.1 < (1.0 - WORTH) * least)
-        {
-            best = Some(found);
+    let mut best: Option<Candidate> = None;
+    for after in search.candidates(&counts, options.lag)? {
+        let next = search.judged(after)?;
+        let is_worth = |best: &Candidate| {
+            next.left_out < (1.0 - WORTH) * best.left_out
+                && next.fitted < (1.0 - WORTH) * best.fitted
+        };
+        if best.as_ref().is_none_or(is_worth) {
+            best = Some(next);
         }
     }
-    let (after, with) = best.unwrap_or((After::default(), without));
+    let (after, with) = match best {
+        Some(best) => (best.after, best.left_out),
+        None => (After::default(), without),
+    };
     Ok((after, Report { without, with }))
+}
+
+/// Constants, and the errors with them. On a coarse plane a lag helps where there is none, so what
+/// is taken has to help on a fine one as well.
+struct Candidate {
+    after: After,
+    left_out: f64,
+    fitted: f64,
 }
 
 /// The recordings with the output as it was before creep and lag.
@@ -147,7 +155,10 @@ pub(crate) fn check_time(recordings: &[Recording]) -> Result<()> {
 
 struct Search<'a> {
     recordings: &'a [Recording],
-    options: FitOptions,
+    /// For what is left out.
+    coarse: FitOptions,
+    /// For what is fitted.
+    fine: FitOptions,
     progress: Progress<'a>,
     /// Sampling step, and the time that the longest recording takes.
     step: f64,
@@ -158,6 +169,7 @@ impl<'a> Search<'a> {
     fn new(
         recordings: &'a [Recording],
         options: &FitOptions,
+        open: Open,
         progress: Progress<'a>,
     ) -> Result<Self> {
         let (mut step, mut longest) = (f64::INFINITY, 0.0_f64);
@@ -170,25 +182,80 @@ impl<'a> Search<'a> {
             let what = "time does not pass in a recording, so creep and lag cannot be identified";
             return Err(Error::Thermal(what.into()));
         }
-        let options = FitOptions {
+        let coarse = FitOptions {
             bootstrap: 0,
             smooth: options.smooth.at_least(SMOOTH),
             ..options.clone()
         };
+        let fine = FitOptions {
+            levels: match open.levels {
+                true => FINE.max(options.levels),
+                false => options.levels,
+            },
+            smooth: match open.smooth {
+                true => SLIGHT,
+                false => options.smooth,
+            },
+            ..coarse.clone()
+        };
         Ok(Self {
             recordings,
-            options,
+            coarse,
+            fine,
             progress,
             step,
             longest,
         })
     }
 
-    /// The best creep of `count` terms with this lag, and its error on blocks left out.
+    fn judged(&self, after: After) -> Result<Candidate> {
+        Ok(Candidate {
+            left_out: self.left_out(&after)?,
+            fitted: self.fitted(&after)?,
+            after,
+        })
+    }
+
+    /// For each number of terms of creep the best constants, with no lag and with one if it is left
+    /// to the data. A few numbers cannot follow noise, so they are those with the least error on what
+    /// is fitted; whether they are taken is another question.
+    fn candidates(&self, counts: &[usize], lag: Choice<f64>) -> Result<Vec<After>> {
+        let lags = match lag {
+            Choice::Fixed(lag) => vec![lag],
+            Choice::Auto => [0.0].into_iter().chain(self.lag_alone()?).collect(),
+        };
+        let mut found = Vec::new();
+        for count in counts {
+            for given in &lags {
+                let mut best = self.creep(*count, *given)?;
+                if lag == Choice::Auto && *given > 0.0 {
+                    self.refine_lag(&mut best)?;
+                }
+                found.push(best.0);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The lag that is best without creep; `None` in too short a recording.
+    fn lag_alone(&self) -> Result<Option<f64>> {
+        let longest = SLOWEST * self.longest;
+        let lags = std::iter::successors(Some(SHORTEST * self.step), |lag| Some(2.0 * lag));
+        let mut best: Option<(f64, f64)> = None;
+        for lag in lags.take_while(|lag| *lag <= longest) {
+            let error = self.creep(0, lag)?.1;
+            if best.is_none_or(|(_, least)| error < least) {
+                best = Some((lag, error));
+            }
+        }
+        Ok(best.map(|(lag, _)| lag))
+    }
+
+    /// The best creep of `count` terms with this lag, and its error on what is fitted.
     fn creep(&self, count: usize, lag: f64) -> Result<(After, f64)> {
         let rate = |terms: &[CreepTerm]| {
             let after = After::after(terms, lag)?;
-            let error = self.rated(&after)?;
+            let error = self.fitted(&after)?;
             Ok::<_, Error>((after, error))
         };
         if count == 0 {
@@ -213,31 +280,54 @@ impl<'a> Search<'a> {
                 _ => consider(&self.terms(count, coefficient))?,
             }
         }
-        for round in 1..=REFINED {
-            let step = 2_f64.powf(1.0 / f64::from(round));
-            for factor in [step, 1.0 / step] {
-                let scaled = |coefficient: f64, tau: f64| {
-                    let scale = |term: CreepTerm| CreepTerm {
-                        coefficient: term.coefficient * coefficient,
-                        tau: term.tau * tau,
-                    };
-                    best.0.terms().into_iter().map(scale).collect::<Vec<_>>()
-                };
-                for terms in [scaled(factor, 1.0), scaled(1.0, factor)] {
-                    let next = rate(&terms)?;
-                    if next.1 < best.1 {
-                        best = next;
-                    }
-                }
-            }
-        }
+        self.refine_creep(&mut best)?;
         Ok(best)
     }
 
-    /// Terms with time constants spread evenly over the logarithm, from a thirtieth to a third of the
-    /// longest recording. Faster ones would not be creep, but stand for other dynamics.
+    /// Scales the coefficients of creep, and its time constants, as far as that helps.
+    fn refine_creep(&self, best: &mut (After, f64)) -> Result<()> {
+        let scaled = |after: &After, coefficient: f64, tau: f64| {
+            let scale = |term: CreepTerm| CreepTerm {
+                coefficient: term.coefficient * coefficient,
+                tau: term.tau * tau,
+            };
+            let terms: Vec<_> = after.terms().into_iter().map(scale).collect();
+            After::after(&terms, after.lag())
+        };
+        self.refine(best, |after, factor| scaled(after, factor, 1.0))?;
+        self.refine(best, |after, factor| scaled(after, 1.0, factor))
+    }
+
+    fn refine_lag(&self, best: &mut (After, f64)) -> Result<()> {
+        self.refine(best, |after, factor| {
+            After::after(&after.terms(), factor * after.lag())
+        })
+    }
+
+    /// Changes a stage by factors that come nearer to one, as long as the error on what is fitted
+    /// falls.
+    fn refine(
+        &self,
+        best: &mut (After, f64),
+        changed: impl Fn(&After, f64) -> Result<After>,
+    ) -> Result<()> {
+        for round in 1..=REFINED {
+            let step = 2_f64.powf(0.5_f64.powi(round));
+            for factor in [step, 1.0 / step] {
+                let after = changed(&best.0, factor)?;
+                let error = self.fitted(&after)?;
+                if error < best.1 {
+                    *best = (after, error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Terms with time constants spread evenly over the logarithm, from a thirtieth ([`SLOWEST`]) to a
+    /// third of the longest recording. Faster ones would not be creep, but stand for other dynamics.
     fn terms(&self, count: usize, coefficient: f64) -> Vec<CreepTerm> {
-        let (from, to) = ((self.longest / 30.0).ln(), (self.longest / 3.0).ln());
+        let (from, to) = ((SLOWEST * self.longest).ln(), (self.longest / 3.0).ln());
         let tau = |k: usize| (from + (to - from) * (k as f64 + 0.5) / count as f64).exp();
         let term = |k| CreepTerm {
             coefficient: coefficient / count as f64,
@@ -247,13 +337,25 @@ impl<'a> Search<'a> {
     }
 
     /// The error on blocks of time left out, in percent of the range.
-    fn rated(&self, after: &After) -> Result<f64> {
+    fn left_out(&self, after: &After) -> Result<f64> {
+        self.error(after, &self.coarse, &[Some(0), Some(1)])
+    }
+
+    /// The error on what is fitted, in percent of the range.
+    fn fitted(&self, after: &After) -> Result<f64> {
+        self.error(after, &self.fine, &[None])
+    }
+
+    /// The error with each of these parts left out in turn: every second block of time, or nothing.
+    /// What is left out is what counts; of nothing, all.
+    fn error(&self, after: &After, options: &FitOptions, parts: &[Option<usize>]) -> Result<f64> {
         self.progress.tell("creep and lag", f64::NAN)?;
         let seen = before(after, self.recordings)?;
-        let mut problem = Problem::new(&seen, &self.options)?;
+        let mut problem = Problem::new(&seen, options)?;
+        let block = |recording: &Recording, n: usize| n * BLOCKS / recording.len();
         let blocks: Vec<usize> = seen
             .iter()
-            .flat_map(|recording| (0..recording.len()).map(|n| n * BLOCKS / recording.len()))
+            .flat_map(|recording| (0..recording.len()).map(|n| block(recording, n) % 2))
             .collect();
         let measured: Vec<f64> = self
             .recordings
@@ -261,19 +363,22 @@ impl<'a> Search<'a> {
             .flat_map(|recording| recording.output.clone())
             .collect();
         let mut squares = 0.0;
-        for parity in 0..2 {
-            let kept: Vec<f64> = blocks.iter().map(|b| f64::from(b % 2 != parity)).collect();
+        for part in parts {
+            let kept: Vec<f64> = blocks
+                .iter()
+                .map(|b| f64::from(Some(*b) != *part))
+                .collect();
             let fitted = problem.solve(Some(&kept), Progress::NONE)?;
             let predicted = problem.predict(&fitted.solution)?;
             let sign = fitted.sign.factor();
-            let offset = self.options.offset.unwrap_or(0.0);
+            let offset = options.offset.unwrap_or(0.0);
             let sums: Vec<f64> = predicted.iter().map(|h| offset + sign * h).collect();
             let outputs = self.forward(after, &sums)?;
             squares += outputs
                 .iter()
                 .zip(&measured)
                 .zip(&blocks)
-                .filter(|(_, block)| **block % 2 == parity)
+                .filter(|(_, block)| part.is_none_or(|part| **block == part))
                 .map(|((h, y), _)| (h - y).powi(2))
                 .sum::<f64>();
         }

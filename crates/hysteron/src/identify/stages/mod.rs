@@ -98,6 +98,18 @@ pub(crate) fn fit(
         seen = Cow::Owned(swinging.recordings);
         ring = Some(swinging.constants);
     }
+    // So would what creeps or comes late.
+    if options.asks_after() {
+        let (after, report) = after::find(&seen, &options, asked.open, progress)?;
+        notes.insert("after".to_owned(), json!(report));
+        seen = Cow::Owned(after::before(&after, &seen)?);
+        found.behind = after;
+    }
+    if let Some([frequency, damping]) = ring {
+        let named = [("ring_frequency", frequency), ("ring_damping", damping)];
+        let named = named.map(|(name, number)| (name, vec![number]));
+        found.behind = found.behind.with(named)?;
+    }
     let (few_seen, few_measured) = (few(&seen, &seen), few(recordings, &seen));
     let unspaced = Seen {
         operators: &few_seen,
@@ -131,17 +143,6 @@ pub(crate) fn fit(
     }
     if asked.auto_bootstrap {
         options.bootstrap = FitOptions::usual_bootstrap(options.levels);
-    }
-    if options.asks_after() {
-        let (after, report) = after::find(&seen, &options, progress)?;
-        notes.insert("after".to_owned(), json!(report));
-        seen = Cow::Owned(after::before(&after, &seen)?);
-        found.behind = after;
-    }
-    if let Some([frequency, damping]) = ring {
-        let named = [("ring_frequency", frequency), ("ring_damping", damping)];
-        let named = named.map(|(name, number)| (name, vec![number]));
-        found.behind = found.behind.with(named)?;
     }
     if options.curve != Choice::Fixed(0)
         && !loaded

@@ -1,0 +1,30 @@
+//! Which part of an error is in readings that are wrong.
+
+use super::cause::{Cause, WORTH};
+use crate::recording::Recording;
+
+/// Readings that stand out or were held, if a good part of the squared error is in them.
+pub(super) fn cause(recordings: &[Recording], modelled: &[f64]) -> Option<Cause> {
+    let samples: usize = recordings.iter().map(Recording::len).sum();
+    if modelled.len() != samples {
+        return None;
+    }
+    let (mut total, mut first) = (0.0, 0);
+    let (mut within, mut count) = (0.0, 0);
+    for recording in recordings {
+        let modelled = &modelled[first..first + recording.len()];
+        let squared = |n: usize| (recording.output[n] - modelled[n]).powi(2);
+        total += (0..recording.len()).map(squared).sum::<f64>();
+        let mut wrong = recording.wrong_readings().concat();
+        wrong.sort_unstable();
+        wrong.dedup();
+        within += wrong.iter().map(|n| squared(*n)).sum::<f64>();
+        count += wrong.len();
+        first += recording.len();
+    }
+    let share = within / total;
+    (share >= WORTH).then_some(Cause::Readings {
+        share,
+        samples: count,
+    })
+}
