@@ -38,17 +38,23 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
     )
 }
 
+/// Rows to look ahead, unless others are asked for.
+const LOOK_AHEAD: usize = 65_536;
+
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
     let (policy, tolerance) = match args.policy {
         args::Policy::Hold => (Policy::Hold, 0.0),
         args::Policy::Anticipate => (Policy::Anticipate, model.usual_tolerance()),
     };
+    if args.look_ahead.is_some() && policy == Policy::Hold {
+        return Err("--look-ahead needs --policy anticipate: `hold` looks at no later row".into());
+    }
     let how = Invert {
         target: &args.target,
         policy,
         tolerance: args.tolerance.unwrap_or(tolerance),
-        look_ahead: args.look_ahead,
+        look_ahead: args.look_ahead.unwrap_or(LOOK_AHEAD),
         around: Around {
             time: args.time.as_deref(),
             load: load.as_deref(),
@@ -133,7 +139,8 @@ fn through(
     }
     if counts.limited > 0 {
         say(format_args!(
-            "{} of {} targets need a faster drive than its range allows",
+            "{} of {} targets cannot be reached in their row: the range of the drive, or a stage that \
+             needs time, allows no more",
             counts.limited, counts.samples
         ));
     }

@@ -63,7 +63,7 @@ pub enum Error {
         problem: String,
     },
     /// The options of a fit contradict each other or the data.
-    #[error("fit: {0}")]
+    #[error("{0}")]
     Fit(String),
     /// A step of the preparation cannot be done with these options.
     #[error("preparation: {0}")]

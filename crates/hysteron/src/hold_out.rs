@@ -20,6 +20,8 @@ pub struct HeldOut {
     pub model: Errors,
     /// Errors of simple predictors, fitted to the same samples as the model.
     pub rivals: Vec<RivalErrors>,
+    /// Whether no ring was looked for, because more than the end of a recording was held out.
+    pub without_ring: bool,
 }
 
 /// Stands in the record of a fit that was tested on a part of its recordings alone.
@@ -42,14 +44,15 @@ impl HeldOut {
         self.rivals.iter().filter(move |r| r.errors.rmse < model)
     }
 
-    /// A warning for each rival that is better.
+    /// A warning for each rival that is better, and for what was not looked for.
     pub fn advice(&self) -> impl Iterator<Item = Advice> {
         let model = self.model.nrmse_percent.unwrap_or_default();
-        self.better().map(move |rival| Advice::RivalWins {
+        let better = self.better().map(move |rival| Advice::RivalWins {
             name: rival.name.to_owned(),
             rival: rival.errors.nrmse_percent.unwrap_or_default(),
             model,
-        })
+        });
+        better.chain(self.without_ring.then_some(Advice::NoRing))
     }
 
     /// Reads the result from the entry `hold_out` of a fit's record ([`crate::FitSummary::other`]);
@@ -68,6 +71,7 @@ impl HeldOut {
         Some(Self {
             model: errors(&entry["model"])?,
             rivals: rivals.collect::<Option<_>>()?,
+            without_ring: entry["without_ring"].as_bool().unwrap_or_default(),
         })
     }
 
@@ -143,6 +147,8 @@ pub fn fit_holding_out(
         false => fit.clone(),
     };
     let ends_alone = splits.iter().all(|split| split.is_head);
+    let could_ring = |one: &Recording| one.time.is_some() && one.load.is_none();
+    let without_ring = !ends_alone && fit.looks_for_ring() && recordings.iter().all(could_ring);
     if !ends_alone {
         // A ring that nobody asked for could not be judged.
         fit = fit.without_auto_dynamics();
@@ -175,7 +181,8 @@ pub fn fit_holding_out(
     let all: Vec<&Recording> = recordings.iter().chain(others.iter().copied()).collect();
     let outputs = simulated(&model, &all)?;
     let is_held = |n: usize| held.get(n).copied().unwrap_or(true);
-    let report = compare(&training, &all, &outputs, is_held)?;
+    let mut report = compare(&training, &all, &outputs, is_held)?;
+    report.without_ring = without_ring;
     report.record_in(&mut model);
     if let Some(fit) = &mut model.fit
         && others.is_empty()
@@ -254,5 +261,9 @@ fn compare(
         })
     };
     let rivals = RIVALS.into_iter().map(rival).collect::<Result<_>>()?;
-    Ok(HeldOut { model, rivals })
+    Ok(HeldOut {
+        model,
+        rivals,
+        without_ring: false,
+    })
 }

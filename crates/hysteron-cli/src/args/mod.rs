@@ -66,8 +66,8 @@ pub(crate) enum Command {
         \x20 hysteron simulate spring.json run2.csv --input temperature -o modelled.csv")]
     Simulate(Simulate),
     /// Find the input for a wanted output: adds the columns `input_model` (the drive, for a model
-    /// with a thermal body) and `status` (ok, low, high, limited); `output_low` and `output_high`,
-    /// where the output may really be, if the model knows how far it errs
+    /// with a thermal body) and `status` (ok, low, high, passed, limited); `output_low` and
+    /// `output_high`, where the output may really be, if the model knows how far it errs
     #[command(after_help = "Example:\n\
         \x20 hysteron invert spring.json wanted.csv --target displacement -o inputs.csv")]
     Invert(Invert),
@@ -192,9 +192,9 @@ pub(crate) struct Invert {
     /// [default: 0 with `hold`, 1 % of the model's range with `anticipate`]
     #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_tolerance)]
     pub(crate) tolerance: Option<f64>,
-    /// With `anticipate`: rows to look ahead for the next reversal
-    #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = up_to::<usize>(u64::from(u32::MAX)))]
-    pub(crate) look_ahead: usize,
+    /// With `anticipate`: rows to look ahead for the next reversal [default: 65536]
+    #[arg(long, value_name = "N", value_parser = up_to::<usize>(u64::from(u32::MAX)))]
+    pub(crate) look_ahead: Option<usize>,
     #[command(flatten)]
     pub(crate) load: Load,
     /// Column of time, in seconds or with its unit in its name, for a model that depends on

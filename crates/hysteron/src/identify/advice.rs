@@ -67,6 +67,8 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
+    /// No ring was looked for, because more than the end of a recording was held out.
+    NoRing,
     /// The first input does not determine the state of some operators, and all of these were taken
     /// as off.
     OpenStart {
@@ -132,6 +134,10 @@ impl fmt::Display for Advice {
                      of the fit is"
                 )
             }
+            Self::NoRing => f.write_str(
+                "no ring was looked for: it needs every sample before a row, and branches were held \
+                 out",
+            ),
             Self::OpenStart { operators } => write!(
                 f,
                 "the first input does not determine the state of {operators} operators: they are \
@@ -175,6 +181,10 @@ impl Advice {
             Self::RivalWins { .. } | Self::FewData { .. } => Remedy::new(
                 "record more branches, and test the model on another recording",
                 [],
+            ),
+            Self::NoRing => Remedy::new(
+                "hold out rows at the end or another recording with {}, or turn the search off with {}",
+                [Setting::any("hold-out"), Setting::word("dynamics", "off")],
             ),
             Self::OpenStart { .. } => Remedy::new(
                 "if the recording does not begin after the lowest input, use {}",

@@ -263,6 +263,11 @@ impl<'a> Fit<'a> {
         self.options.needs_time() || self.thermal != Thermal::None
     }
 
+    /// Whether a ring is looked for in recordings with time and without a load.
+    pub(crate) fn looks_for_ring(&self) -> bool {
+        self.options.looks_for_ring()
+    }
+
     /// Looks for no dynamics that were not asked for.
     pub(crate) fn without_auto_dynamics(mut self) -> Self {
         if self.options.dynamics == Dynamics::Auto {

@@ -245,6 +245,11 @@ impl Verdict {
                         Setting::on("thermal"),
                     ],
                 ),
+                PartKind::Drift if self.has_time => Remedy::new(
+                    "let the specimen settle before you record, adapt on line (adapt), or fit it with \
+                     the time as {} and not as {}",
+                    [Setting::any("load"), Setting::any("time")],
+                ),
                 PartKind::Drift => Remedy::new(
                     "let the specimen settle before you record, adapt on line (adapt), or fit it with \
                      the time as {}",

@@ -5,9 +5,10 @@ use super::samples::{Next, Samples};
 use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Bounds, Inverse, Model, OperatorState, Policy};
 use crate::model::{Preview, Sample, State, Surroundings, Wanted};
+use crate::remedy::{Remedy, Setting};
 use crate::series::Headings;
 use hysteron_core::{Solution, StageState, Status};
 use std::collections::VecDeque;
@@ -46,7 +47,8 @@ pub struct Invert<'a> {
 ///
 /// # Errors
 /// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
-/// [`crate::Error::Fit`] for a range of drives that is not in order.
+/// [`crate::Error::Fit`] for a range of drives that is not in order, and for a horizon or a preview
+/// without a thermal body.
 pub fn invert_table(
     model: &Model,
     state: State,
@@ -68,6 +70,11 @@ pub fn invert_table(
         Some(_) => Some(Preview::new(model, &inner, drive, seconds, state.clone())?),
     };
     let heated = model.thermal.is_some();
+    if !heated && (what.horizon > 0.0 || what.preview.is_some()) {
+        let what = "horizon and preview are for a thermal body, and the model has none".to_owned();
+        let options = [Setting::any("horizon"), Setting::any("preview")];
+        return Err(Error::Fit(what).remedied(Remedy::new("leave out {} and {}", options)));
+    }
     let around_output = match model.bounds()? {
         Some(bounds) => Some(AroundOutput::new(model, bounds, &state)?),
         None => None,
