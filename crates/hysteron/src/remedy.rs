@@ -63,6 +63,14 @@ impl Remedy {
     }
 }
 
+/// A number of things, of which there may be one: "1 reading", "2 readings".
+pub(crate) fn counted(count: usize, one: &str) -> String {
+    match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {one}s"),
+    }
+}
+
 impl Setting {
     /// An option whose value the user chooses.
     #[must_use]

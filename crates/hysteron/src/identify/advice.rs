@@ -5,7 +5,7 @@ use crate::identify::choose::start::MANY_OPEN;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Outlier, Solver, Start, Surroundings};
 use crate::recording::{Quantity, Recording};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::{Remedy, Setting, counted};
 use crate::rivals::wins;
 use crate::series::noise::noise;
 use crate::series::{branch_spans, usual_tolerance};
@@ -116,8 +116,9 @@ impl fmt::Display for Advice {
                 first,
             } => write!(
                 f,
-                "{samples} readings of {series} stand out from their neighbours or were held, the \
-                 first in row {first}: they bend the model"
+                "{} of {series} out of line with neighbours or held, the first in row {first}: \
+                 this bends the model",
+                counted(*samples, "reading")
             ),
             Self::FewData {
                 samples,

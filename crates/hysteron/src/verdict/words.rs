@@ -4,7 +4,7 @@ use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
 use crate::model::band_name;
 use crate::recording::Quantity;
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::{Remedy, Setting, counted};
 use std::fmt;
 
 /// No session changes a gain so much: another unit or another device does.
@@ -104,9 +104,9 @@ impl Verdict {
                 100.0 * share
             ),
             Cause::Readings { share, samples } => format!(
-                "{:.0} % of the squared error is in {samples} readings that stand out from their \
-                 neighbours or were held",
-                100.0 * share
+                "{:.0} % of the squared error is in {} out of line with neighbours or held",
+                100.0 * share,
+                counted(*samples, "reading")
             ),
             Cause::LoadsLeftOut { percent } => format!(
                 "loads that were left out are predicted to {percent:.2} % of their range: at loads \
@@ -126,7 +126,11 @@ impl Verdict {
                 self.output.text(*noise)
             ),
             Cause::FewBranches { branches } => {
-                format!("only {branches} branches were recorded: what other paths do is a guess")
+                let branches = match branches {
+                    1 => "one branch was recorded".to_owned(),
+                    count => format!("only {count} branches were recorded"),
+                };
+                format!("{branches}: what other paths do is a guess")
             }
             Cause::Misfit { misfit, noise } => format!(
                 "{} of it is what the model cannot follow; the noise of the readings is {}",
