@@ -338,13 +338,13 @@ class HeldOut(_Result):
         Of the model.
     rivals : tuple of RivalErrors
         Of a straight line and of interpolation.
-    without_ring : bool
-        Whether no ring was looked for, because more than the end of a recording was held out.
+    without_dynamics : bool
+        Whether neither a ring nor a lag was looked for, because more than the end of a recording was held out.
     """
 
     model: Errors
     rivals: tuple[RivalErrors, ...]
-    without_ring: bool = False
+    without_dynamics: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -20,8 +20,8 @@ pub struct HeldOut {
     pub model: Errors,
     /// Errors of simple predictors, fitted to the same samples as the model.
     pub rivals: Vec<RivalErrors>,
-    /// Whether no ring was looked for, because more than the end of a recording was held out.
-    pub without_ring: bool,
+    /// Whether neither a ring nor a lag was looked for, because more than the end of a recording was held out.
+    pub without_dynamics: bool,
 }
 
 /// Stands in the record of a fit that was tested on a part of its recordings alone.
@@ -52,7 +52,7 @@ impl HeldOut {
             rival: rival.errors.nrmse_percent.unwrap_or_default(),
             model,
         });
-        better.chain(self.without_ring.then_some(Advice::NoRing))
+        better.chain(self.without_dynamics.then_some(Advice::NoDynamics))
     }
 
     /// Reads the result from the entry `hold_out` of a fit's record ([`crate::FitSummary::other`]);
@@ -71,7 +71,7 @@ impl HeldOut {
         Some(Self {
             model: errors(&entry["model"])?,
             rivals: rivals.collect::<Option<_>>()?,
-            without_ring: entry["without_ring"].as_bool().unwrap_or_default(),
+            without_dynamics: entry["without_dynamics"].as_bool().unwrap_or_default(),
         })
     }
 
@@ -147,8 +147,9 @@ pub fn fit_holding_out(
         false => fit.clone(),
     };
     let ends_alone = splits.iter().all(|split| split.is_head);
-    let could_ring = |one: &Recording| one.time.is_some() && one.load.is_none();
-    let without_ring = !ends_alone && fit.looks_for_ring() && recordings.iter().all(could_ring);
+    let has_dynamics = |one: &Recording| one.time.is_some() && one.load.is_none();
+    let without_dynamics =
+        !ends_alone && fit.looks_for_dynamics() && recordings.iter().all(has_dynamics);
     if !ends_alone {
         // A ring that nobody asked for could not be judged.
         fit = fit.without_auto_dynamics();
@@ -182,7 +183,7 @@ pub fn fit_holding_out(
     let outputs = simulated(&model, &all)?;
     let is_held = |n: usize| held.get(n).copied().unwrap_or(true);
     let mut report = compare(&training, &all, &outputs, is_held)?;
-    report.without_ring = without_ring;
+    report.without_dynamics = without_dynamics;
     report.record_in(&mut model);
     if let Some(fit) = &mut model.fit
         && others.is_empty()
@@ -264,6 +265,6 @@ fn compare(
     Ok(HeldOut {
         model,
         rivals,
-        without_ring: false,
+        without_dynamics: false,
     })
 }

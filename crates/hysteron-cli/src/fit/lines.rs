@@ -232,11 +232,11 @@ fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
         said.push(format!("lag of {} s", text::number(lag)));
     }
     match (said.is_empty(), asked) {
-        (_, false) => None,
+        (true, false) => None,
         (true, true) => {
             Some("no creep and no lag: they do not predict parts of the recording left out".into())
         }
-        (false, true) => Some(said.join(", ")),
+        (false, _) => Some(said.join(", ")),
     }
 }
 

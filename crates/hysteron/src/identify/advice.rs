@@ -67,8 +67,8 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
-    /// No ring was looked for, because more than the end of a recording was held out.
-    NoRing,
+    /// Neither a ring nor a lag was looked for, because more than the end of a recording was held out.
+    NoDynamics,
     /// The first input does not determine the state of some operators, and all of these were taken
     /// as off.
     OpenStart {
@@ -135,9 +135,9 @@ impl fmt::Display for Advice {
                      of the fit is"
                 )
             }
-            Self::NoRing => f.write_str(
-                "no ring was looked for: it needs every sample before a row, and branches were held \
-                 out",
+            Self::NoDynamics => f.write_str(
+                "neither a ring nor a lag was looked for: they need every sample before a row, and \
+                 branches were held out",
             ),
             Self::OpenStart { operators } => write!(
                 f,
@@ -183,7 +183,7 @@ impl Advice {
                 "record more branches, and test the model on another recording",
                 [],
             ),
-            Self::NoRing => Remedy::new(
+            Self::NoDynamics => Remedy::new(
                 "hold out rows at the end or another recording with {}, or turn the search off with {}",
                 [Setting::any("hold-out"), Setting::word("dynamics", "off")],
             ),

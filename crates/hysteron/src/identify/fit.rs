@@ -263,8 +263,8 @@ impl<'a> Fit<'a> {
         self.options.needs_time() || self.thermal != Thermal::None
     }
 
-    /// Whether a ring is looked for in recordings with time and without a load.
-    pub(crate) fn looks_for_ring(&self) -> bool {
+    /// Whether a ring or a lag is looked for in recordings with time and without a load.
+    pub(crate) fn looks_for_dynamics(&self) -> bool {
         self.options.looks_for_ring()
     }
 

@@ -295,6 +295,11 @@ impl FitOptions {
         }
     }
 
+    /// Whether a lag is looked for that nobody asked for.
+    pub(crate) fn looks_for_lag(&self) -> bool {
+        self.dynamics == Dynamics::Auto && !self.asks_after()
+    }
+
     /// Whether the recordings have to have time.
     pub(crate) fn needs_time(&self) -> bool {
         self.asks_after() || matches!(self.dynamics, Dynamics::Ring | Dynamics::Lag)

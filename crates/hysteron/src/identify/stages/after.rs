@@ -65,6 +65,49 @@ pub(super) struct Report {
     with: f64,
 }
 
+/// A lag that nobody asked for is at most so many sampling steps long: to undo a longer one, an
+/// inverse multiplies the noise of its target by more than 4.5.
+const UNASKED: f64 = 4.0;
+
+/// A lag of one sampling step has to reduce the error on what is fitted by this share, or a lag is
+/// not looked for unasked.
+const HINT: f64 = 0.05;
+
+/// A short lag, where it predicts parts of the recordings that were left out; `None` where there is
+/// none, or where samples come at the same time.
+pub(super) fn find_short_lag(
+    recordings: &[Recording],
+    options: &FitOptions,
+    open: Open,
+    progress: Progress<'_>,
+) -> Result<Option<(After, Report)>> {
+    let passes = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
+    let passes = |recording: &Recording| recording.time.as_ref().is_some_and(passes);
+    if !recordings.iter().all(passes) {
+        return Ok(None);
+    }
+    let search = Search::new(recordings, options, open, progress)?;
+    let bare = search.fitted(&After::default())?;
+    if search.creep(0, search.step)?.1 > (1.0 - HINT) * bare {
+        return Ok(None);
+    }
+    let longest = (UNASKED * search.step).min(SLOWEST * search.longest);
+    let Some(lag) = search.lag_alone(longest)? else {
+        return Ok(None);
+    };
+    let mut best = search.creep(0, lag)?;
+    search.refine_lag(&mut best)?;
+    if best.0.lag() > longest {
+        return Ok(None);
+    }
+    let (without, with) = (search.judged(After::default())?, search.judged(best.0)?);
+    let report = Report {
+        without: without.left_out,
+        with: with.left_out,
+    };
+    Ok(with.is_worth(&without).then_some((with.after, report)))
+}
+
 pub(super) fn find(
     recordings: &[Recording],
     options: &FitOptions,
@@ -95,11 +138,7 @@ pub(super) fn find(
     let mut best: Option<Candidate> = None;
     for after in search.candidates(&counts, options.lag)? {
         let next = search.judged(after)?;
-        let is_worth = |best: &Candidate| {
-            next.left_out < (1.0 - WORTH) * best.left_out
-                && next.fitted < (1.0 - WORTH) * best.fitted
-        };
-        if best.as_ref().is_none_or(is_worth) {
+        if best.as_ref().is_none_or(|best| next.is_worth(best)) {
             best = Some(next);
         }
     }
@@ -116,6 +155,14 @@ struct Candidate {
     after: After,
     left_out: f64,
     fitted: f64,
+}
+
+impl Candidate {
+    /// Whether it is worth more constants than a simpler one has.
+    fn is_worth(&self, simpler: &Self) -> bool {
+        let better = |error: f64, other: f64| error < (1.0 - WORTH) * other;
+        better(self.left_out, simpler.left_out) && better(self.fitted, simpler.fitted)
+    }
 }
 
 /// The recordings with the output as it was before creep and lag.
@@ -222,7 +269,10 @@ impl<'a> Search<'a> {
     fn candidates(&self, counts: &[usize], lag: Choice<f64>) -> Result<Vec<After>> {
         let lags = match lag {
             Choice::Fixed(lag) => vec![lag],
-            Choice::Auto => [0.0].into_iter().chain(self.lag_alone()?).collect(),
+            Choice::Auto => {
+                let alone = self.lag_alone(SLOWEST * self.longest)?;
+                [0.0].into_iter().chain(alone).collect()
+            }
         };
         let mut found = Vec::new();
         for count in counts {
@@ -237,9 +287,8 @@ impl<'a> Search<'a> {
         Ok(found)
     }
 
-    /// The lag that is best without creep; `None` in too short a recording.
-    fn lag_alone(&self) -> Result<Option<f64>> {
-        let longest = SLOWEST * self.longest;
+    /// The lag up to the `longest` that is best without creep; `None` in too short a recording.
+    fn lag_alone(&self, longest: f64) -> Result<Option<f64>> {
         let lags = std::iter::successors(Some(SHORTEST * self.step), |lag| Some(2.0 * lag));
         let mut best: Option<(f64, f64)> = None;
         for lag in lags.take_while(|lag| *lag <= longest) {

@@ -99,8 +99,19 @@ pub(crate) fn fit(
         ring = Some(swinging.constants);
     }
     // So would what creeps or comes late.
-    if options.asks_after() {
-        let (after, report) = after::find(&seen, &options, asked.open, progress)?;
+    let after = match options.asks_after() {
+        true => Some(after::find(&seen, &options, asked.open, progress)?),
+        false
+            if options.looks_for_lag()
+                && ring.is_none()
+                && asked.thermal == Thermal::None
+                && !loaded =>
+        {
+            after::find_short_lag(&seen, &options, asked.open, progress)?
+        }
+        false => None,
+    };
+    if let Some((after, report)) = after {
         notes.insert("after".to_owned(), json!(report));
         seen = Cow::Owned(after::before(&after, &seen)?);
         found.behind = after;
