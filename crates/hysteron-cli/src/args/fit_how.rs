@@ -127,8 +127,8 @@ pub(crate) struct Stages {
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
     /// What happens behind the operators in time: a ring, which is a resonance of the second order,
-    /// or a lag, which is of the first. `auto` looks for a ring in recordings with time and without a
-    /// load, unless creep or a lag is asked for
+    /// or a lag, which is of the first. `auto` looks for a ring, and for a lag of up to four samples,
+    /// in recordings with time and without a load, unless creep or a lag is asked for
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) dynamics: Dynamics,
     /// Output curve behind the operators: `auto` (where it predicts parts of the recordings left

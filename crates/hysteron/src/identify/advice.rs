@@ -165,11 +165,13 @@ impl Advice {
                 [Setting::any("sign")],
             ),
             Self::AgainstInput { .. } => Remedy::new(
-                "use {} for a butterfly loop, {} for several loads, {} for a drive that heats",
+                "use {} for an output that comes late, {} for a drive that heats, {} for several \
+                 loads, {} for a butterfly loop",
                 [
-                    Setting::word("solver", "ols"),
-                    Setting::any("load"),
+                    Setting::word("lag", "auto"),
                     Setting::any("thermal"),
+                    Setting::any("load"),
+                    Setting::word("solver", "ols"),
                 ],
             ),
             Self::FalseReversals { .. } => {

@@ -277,8 +277,9 @@ impl<'a> Fit<'a> {
     }
 
     /// What is looked for behind the operators in recordings with time: by default a ring, a
-    /// resonance of the second order, where the recordings excite one. It is taken only if it
-    /// predicts parts of them that were left out. Recordings with a load get none.
+    /// resonance of the second order, where the recordings excite one, else a lag of up to four
+    /// samples. It is taken only if it predicts parts of them that were left out. Recordings with a
+    /// load get none.
     #[must_use]
     pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
         self.options.dynamics = dynamics;

@@ -104,8 +104,9 @@ impl From<Auto> for Thermal {
 /// What is looked for behind the operators in recordings with time, beside creep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dynamics {
-    /// A ring, where the recordings excite one; nothing where they do not, where creep or a lag is
-    /// asked for, or where there is a load.
+    /// A ring, where the recordings excite one; else a lag of up to four samples, where it predicts
+    /// what was left out. Nothing where creep or a lag is asked for, or where there is a load; no lag
+    /// behind a thermal body.
     Auto,
     /// Nothing.
     #[default]
@@ -147,7 +148,7 @@ pub enum Spacing {
 /// | `delay` | off (0); auto | auto, 0 to 1000 | dead time, in samples of the recording |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
 /// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
-/// | `dynamics` | off; auto | off, auto, lag, ring | a resonance, see [`Dynamics`] |
+/// | `dynamics` | off; auto | off, auto, lag, ring | a resonance or a lag, see [`Dynamics`] |
 /// | `curve` | off (0) | auto, 1 to 100 | pieces of a curve behind the operators |
 /// | `bootstrap` | 0; 200 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]

@@ -274,16 +274,24 @@ impl Verdict {
             _ => {
                 let words = |more| format!("{MORE}{more}");
                 let [load, time] = [Setting::any("load"), Setting::any("time")];
+                let [lag, thermal] = [Setting::word("lag", "auto"), Setting::on("thermal")];
                 match (self.has_load, self.has_time) {
                     (false, false) => Remedy::new(
                         words(", or name what else moves the output: {}, {}"),
                         [load, time],
                     ),
-                    (false, true) => {
-                        Remedy::new(words(", or name what else moves the output: {}"), [load])
-                    }
+                    (false, true) => Remedy::new(
+                        words(
+                            ", let the fit look for what comes late ({}, or {} for a drive that \
+                             heats), or name what else moves the output: {}",
+                        ),
+                        [lag, thermal, load],
+                    ),
                     (true, false) => Remedy::new(words(", or name the time: {}"), [time]),
-                    (true, true) => Remedy::new(MORE, []),
+                    (true, true) => Remedy::new(
+                        words(", or let the fit look for what comes late: {}"),
+                        [lag],
+                    ),
                 }
             }
         }

@@ -1,7 +1,9 @@
 //! What comes of a recording with the command that is advised: `fit --prepare`.
 
 use super::fault::Fault;
-use hysteron::{Fit, PrepareOptions, Progress, Recording, Start, evaluate_errors, prepare};
+use hysteron::{
+    Dynamics, Fit, PrepareOptions, Progress, Recording, Start, evaluate_errors, prepare,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -20,7 +22,7 @@ pub fn put(fault: Fault, clean: &Recording, seed: u64) -> Recording {
 
 /// The largest error that is allowed, where the clean recording has `clean`. Noise stays, whatever
 /// is done: with it a model errs no more than without preparation, and what comes on top of the
-/// noise is mended.
+/// noise is mended. It may hide a lag or a ring, so the model beside it has none.
 pub fn allowed(
     fault: Fault,
     [first, second]: &[Recording; 2],
@@ -32,7 +34,8 @@ pub fn allowed(
         _ if fault.is_noisy() => put(fault, first, seed),
         _ => return Ok(BOUND * clean),
     };
-    Ok(BOUND * plain(&bare, second, &fit())?.max(clean))
+    let fit = fit().dynamics(Dynamics::Off);
+    Ok(BOUND * plain(&bare, second, &fit)?.max(clean))
 }
 
 /// The error on a second recording, in percent of its range; or why the first one was refused.

@@ -9,6 +9,7 @@ use crate::model::{CreepTerm, Model, Operators, Smooth, StageConstants};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use crate::series::noise::noise;
 use crate::series::range;
 use hysteron_core::MAX_CREEP;
 use serde::Serialize;
@@ -23,6 +24,9 @@ const BLOCKS: usize = 6;
 /// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out lost
 /// 13 % on a recording at another frequency.
 const WORTH: f64 = 0.1;
+
+/// So much of the whole error has to go, whatever the noise is.
+const LEAST: f64 = 0.02;
 
 /// Coefficients of creep that are tried, for all terms together.
 const COEFFICIENTS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2];
@@ -105,7 +109,8 @@ pub(super) fn find_short_lag(
         without: without.left_out,
         with: with.left_out,
     };
-    Ok(with.is_worth(&without).then_some((with.after, report)))
+    let is_worth = with.is_worth(&without, search.noise);
+    Ok(is_worth.then_some((with.after, report)))
 }
 
 pub(super) fn find(
@@ -138,7 +143,10 @@ pub(super) fn find(
     let mut best: Option<Candidate> = None;
     for after in search.candidates(&counts, options.lag)? {
         let next = search.judged(after)?;
-        if best.as_ref().is_none_or(|best| next.is_worth(best)) {
+        if best
+            .as_ref()
+            .is_none_or(|best| next.is_worth(best, search.noise))
+        {
             best = Some(next);
         }
     }
@@ -158,9 +166,15 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// Whether it is worth more constants than a simpler one has.
-    fn is_worth(&self, simpler: &Self) -> bool {
-        let better = |error: f64, other: f64| error < (1.0 - WORTH) * other;
+    /// Whether it is worth more constants than a simpler one has. No model follows the `noise`, so
+    /// the share is of the error beyond it, and a small one of the whole.
+    fn is_worth(&self, simpler: &Self, noise: f64) -> bool {
+        let share = |less: f64| 1.0 - (1.0 - less) * (1.0 - less);
+        let better = |error: f64, other: f64| {
+            let gained = other * other - error * error;
+            let beyond = other * other - noise * noise;
+            gained > share(WORTH) * beyond && gained > share(LEAST) * other * other
+        };
         better(self.left_out, simpler.left_out) && better(self.fitted, simpler.fitted)
     }
 }
@@ -200,6 +214,15 @@ pub(crate) fn check_time(recordings: &[Recording]) -> Result<()> {
     }
 }
 
+/// The white noise of the outputs, in percent of their range.
+fn noise_percent(recordings: &[Recording]) -> f64 {
+    let ends = recordings.iter().map(|recording| range(&recording.output));
+    let whole = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let worst = recordings.iter().map(|recording| noise(&recording.output));
+    let worst = worst.fold(0.0, f64::max);
+    whole.map_or(0.0, |(low, high)| 100.0 * worst / (high - low))
+}
+
 struct Search<'a> {
     recordings: &'a [Recording],
     /// For what is left out.
@@ -207,6 +230,8 @@ struct Search<'a> {
     /// For what is fitted.
     fine: FitOptions,
     progress: Progress<'a>,
+    /// Standard deviation of the white noise of the outputs, in percent of their range.
+    noise: f64,
     /// Sampling step, and the time that the longest recording takes.
     step: f64,
     longest: f64,
@@ -250,6 +275,7 @@ impl<'a> Search<'a> {
             coarse,
             fine,
             progress,
+            noise: noise_percent(recordings),
             step,
             longest,
         })
