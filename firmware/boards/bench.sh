@@ -7,6 +7,12 @@ fail() { say "$*"; exit 1; }
 # Whether an expression of numbers holds.
 holds() { awk "BEGIN { exit !($1) }"; }
 
+# A library for a model that does not matter: the sketch `device` is the same with any.
+bare() { # BOARD
+    "$here/../boards/model" 5 none > bare.json
+    "$hysteron" export arduino bare.json -o bare --gains 1,10 --board "$1" > /dev/null
+}
+
 # Records MODEL.json. `lost_s`: a machine that has much to do may stop the board for a while.
 record() { # MODEL DEVICE OPTIONS…
     awk 'BEGIN { print "time,drive"

@@ -97,6 +97,15 @@ fn the_files_are_those_that_the_ide_looks_for() {
         assert!(sketch.lines().count() <= 150 && sketch.is_ascii());
         assert!(sketch.lines().all(|line| line.len() <= 100), "{name}");
     }
+    // The parts of both sketches are one text.
+    let [device, standalone] = ["device", "standalone"].map(|name| {
+        let text = read(&format!("examples/{name}/{name}.ino"));
+        let lines = text.lines().map(str::to_owned);
+        let parts = lines.skip_while(|line| !line.starts_with("const uint8_t SENSOR"));
+        parts.take(26).collect::<Vec<_>>()
+    });
+    assert_eq!(device, standalone);
+    assert_eq!(device.last().map(String::as_str), Some("}"), "{device:?}");
     // Written again; but a sketch that was edited is kept.
     write(&model(12, false), &library, Board::Uno).unwrap();
     let mine = library.join("examples/device/device.ino");
@@ -131,6 +140,29 @@ fn what_drives_alone_has_a_share_of_full_power() {
         assert_eq!(told, board == Board::Mega);
         assert!(library.join("examples/device/device.ino").exists());
     }
+}
+
+/// A sketch for another model would drive this one: beside files of the user, too.
+#[test]
+fn no_sketch_of_an_earlier_export_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("wire");
+    let export = |drives| driven(&model(8, false), &library, (Board::Uno, false), drives);
+    let own = library.join("examples/mine/mine.ino");
+    let sketch = library.join("examples/standalone/standalone.ino");
+    export((0.0, 0.7)).unwrap();
+    std::fs::create_dir_all(own.parent().unwrap()).unwrap();
+    std::fs::write(&own, "mine").unwrap();
+    std::fs::write(&sketch, "edited").unwrap();
+    let error = export((20.0, 80.0)).unwrap_err().to_string();
+    assert!(error.contains("standalone.ino"), "{error}");
+    assert_eq!(std::fs::read_to_string(&sketch).unwrap(), "edited");
+    std::fs::remove_file(&sketch).unwrap();
+    export((0.0, 0.7)).unwrap();
+    assert!(sketch.exists());
+    export((20.0, 80.0)).unwrap();
+    assert!(!sketch.parent().unwrap().exists());
+    assert_eq!(std::fs::read_to_string(&own).unwrap(), "mine");
 }
 
 #[test]
