@@ -36,17 +36,20 @@ END
 
 gain() { sed "s/.*\"$1\":\([-0-9.e]*\).*/\1/" <<< "$gains"; }
 
-# Controls with the gains of the library: `gains` is what `export arduino --json` said.
+# Controls with the gains of the library: `gains` is what `export arduino --json` said. GAIN is another
+# gain, and LEARNER learns.
 control() { # NAME DEVICE SECONDS
+    local kind=inverse-pid
+    [ -z "${LEARNER:-}" ] || kind=adaptive-inverse-pid
     cat > "$1.toml" << END
 mode = "control"
 log = "$1.csv"
 duration_s = $3
 device = { $2 }
-reference = { table = "reference.csv" }
+reference = { table = "${REFERENCE:-reference.csv}" }
 ${LIMITS:-}
 safety = { lost_s = 2 }
-controller = { kind = "inverse-pid", model = "${MODEL:-wire.json}", delay = 0, proportional = $(gain gain), integral_s = $(gain integral_s), derivative_s = $(gain derivative_s) }
+controller = { kind = "$kind", model = "${MODEL:-wire.json}", delay = 0, proportional = ${GAIN:-$(gain gain)}, integral_s = $(gain integral_s), derivative_s = $(gain derivative_s)${LEARNER:+, learner = "$LEARNER"} }
 END
     "$hysteron" run "$1.toml" > "$1.said" 2> "$1.log"
 }

@@ -40,7 +40,7 @@ const CODE_MEGA: usize = 2520;
 
 /// What a learner adds: code, constants in RAM beside the weights (the options of *increments*), RAM
 /// of what chooses between it and the fixed model, and stack.
-const LEARNER: [usize; 4] = [24_500, 52, 16, 50];
+const LEARNER: [usize; 4] = [21_800, 52, 16, 50];
 
 /// Bytes of RAM of the same sketch without the model: Arduino's core, its serial line, the sketch's
 /// own. A Mega's has four serial lines.
