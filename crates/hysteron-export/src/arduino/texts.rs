@@ -125,10 +125,7 @@ pub(super) fn files(export: &CExport, standalone: Option<String>) -> Vec<(PathBu
         ("library.properties".into(), properties),
         ("library.json".into(), json),
         ("keywords.txt".into(), keywords),
-        (
-            "examples/device/device.ino".into(),
-            shared(DEVICE),
-        ),
+        ("examples/device/device.ino".into(), shared(DEVICE)),
     ];
     files.extend(standalone.map(|text| (ALONE.into(), text)));
     files
