@@ -39,8 +39,8 @@ gain() { sed "s/.*\"$1\":\([-0-9.e]*\).*/\1/" <<< "$gains"; }
 # Controls with the gains of the library: `gains` is what `export arduino --json` said. GAIN is another
 # gain, and LEARNER learns.
 control() { # NAME DEVICE SECONDS
-    local kind=inverse-pid
-    [ -z "${LEARNER:-}" ] || kind=adaptive-inverse-pid
+    local kind=inverse-pid learner=
+    [ -z "${LEARNER:-}" ] || kind=adaptive-inverse-pid learner=", learner = \"$LEARNER\""
     cat > "$1.toml" << END
 mode = "control"
 log = "$1.csv"
@@ -49,7 +49,7 @@ device = { $2 }
 reference = { table = "${REFERENCE:-reference.csv}" }
 ${LIMITS:-}
 safety = { lost_s = 2 }
-controller = { kind = "$kind", model = "${MODEL:-wire.json}", delay = 0, proportional = ${GAIN:-$(gain gain)}, integral_s = $(gain integral_s), derivative_s = $(gain derivative_s)${LEARNER:+, learner = "$LEARNER"} }
+controller = { kind = "$kind", model = "${MODEL:-wire.json}", delay = 0, proportional = ${GAIN:-$(gain gain)}, integral_s = $(gain integral_s), derivative_s = $(gain derivative_s)$learner }
 END
     "$hysteron" run "$1.toml" > "$1.said" 2> "$1.log"
 }
