@@ -47,10 +47,11 @@ const LEARNER: [usize; 4] = [21_800, 52, 16, 50];
 const OWN: usize = 250;
 const OWN_MEGA: usize = 760;
 
-/// Bytes for the stack, a little more than was measured: without stages, with them, and with those
-/// that only a Mega has room for.
+/// Bytes for the stack, not less than was measured: without stages, with them, what others add to heat
+/// that is bound, and with those that only a Mega has room for.
 const STACK: usize = 350;
-const STACK_STAGES: usize = 540;
+const STACK_STAGES: usize = 520;
+const STACK_LATENT: usize = 10;
 const STACK_MEGA: usize = 640;
 
 /// Bytes of the largest array that avr-gcc compiles.
@@ -130,9 +131,11 @@ impl BoardMemory {
             let learner = avr.adaptation.map_or(0, |bytes| {
                 bytes + avr.state + avr.turns + avr.table + shadow
             });
+            let has = |stages: &[&str]| stages.iter().all(|stage| export.stages.contains(stage));
+            let others = usize::from(has(&["latent"]) && export.stages.len() > 2);
             let (own, own_code, staged_stack) = match board {
                 Board::Mega => (OWN_MEGA, CODE_MEGA, STACK_MEGA),
-                Board::Uno | Board::Large => (OWN, 0, STACK_STAGES),
+                Board::Uno | Board::Large => (OWN, 0, STACK_STAGES + others * STACK_LATENT),
             };
             let controller = avr.controller.unwrap_or(0);
             let model_ram = constants - avr.table + states + controller + learner;
@@ -140,7 +143,6 @@ impl BoardMemory {
                 true => (CODE, STACK),
                 false => (CODE_STAGES, staged_stack),
             };
-            let has = |stages: &[&str]| stages.iter().all(|stage| export.stages.contains(stage));
             let more = MORE.iter().filter(|(stages, _)| has(stages));
             let code = code + own_code + more.map(|(_, bytes)| bytes).sum::<usize>();
             Self {
