@@ -8,9 +8,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// The stages that are measured, each alone, and all of them.
-pub const MEASURED: [&str; 7] = [
-    "body", "load", "weights", "spacing", "creep", "lag", "all",
-];
+pub const MEASURED: [&str; 7] = ["body", "load", "weights", "spacing", "creep", "lag", "all"];
 /// The levels of the models that are measured.
 pub const STAGED_LEVELS: usize = 20;
 /// The time step of the runs that are measured, in seconds.
@@ -82,7 +80,9 @@ fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
         .collect();
     let varies = parts.len() > 1;
     let constants = constants(&json);
-    let timed = constants.iter().any(|(name, _)| TIMED.contains(&name.as_str()));
+    let timed = constants
+        .iter()
+        .any(|(name, _)| TIMED.contains(&name.as_str()));
     let drive = &json["drive"];
     StagedModel {
         constants,
@@ -223,7 +223,10 @@ fn measured(what: &str) -> StagedModel {
 fn measured_runs(staged: &StagedModel, number: usize) -> Vec<StagedRun> {
     let total: f64 = staged.model.weights.iter().sum();
     let spacing = staged.constants.iter().find(|(name, _)| name == "spacing");
-    let (low, high) = match (&staged.drive, spacing.map(|(_, corners)| corners.as_slice())) {
+    let (low, high) = match (
+        &staged.drive,
+        spacing.map(|(_, corners)| corners.as_slice()),
+    ) {
         (Some(range), _) => *range,
         (None, Some([low, .., high])) => (*low, *high),
         _ => (staged.model.min, staged.model.max),
