@@ -4,12 +4,12 @@
  * delay, unless --cut has cut the line.
  *
  *   board ELF [--pty] [--mega] [--wire] [--seconds S] [--trace FILE] [--stack] [--strength X]
- *             [--cut S] [--hang S] [--noise P] [--loose S] [--jam S] [--restart S]
+ *             [--stroke X] [--cut S] [--hang S] [--noise P] [--loose S] [--jam S] [--restart S]
  *
  * --jam: the slider stands still from then on, and its ADC goes on with its noise.
- * --wire, --strength: another actuator (plant.h). The trace has a row for each millisecond, or for ten with
- * --strength: time, wanted and actual position, drive. --stack prints the most bytes that the stack
- * ever took. */
+ * --wire, --strength, --stroke: another actuator (plant.h). The trace has a row for each millisecond,
+ * or for ten with --strength: time, wanted and actual position, drive. --stack prints the most bytes
+ * that the stack ever took. */
 #define _GNU_SOURCE
 #include "plant.h"
 #include <fcntl.h>
@@ -35,7 +35,7 @@
 static const char *chip = "atmega328p";
 static int in = 0, out, has_host, waits, at_start = 1, is_sample;
 static int is_mega;
-static double strength; /* of another actuator; 0 for the spring */
+static double strength, stroke = 1; /* of another actuator; 0 for the spring */
 static double now, seconds = 1e9, cut = 1e9, hang = 1e9, loose = 1e9, jam = 1e9, restart = 1e9, noise;
 static unsigned char queue[4096];
 static size_t from, to;
@@ -184,6 +184,7 @@ int main(int count, char **args) {
         if (!strcmp(option, "--jam")) jam = atof(value);
         if (!strcmp(option, "--restart")) restart = atof(value);
         if (!strcmp(option, "--strength")) strength = atof(value);
+        if (!strcmp(option, "--stroke")) stroke = atof(value);
         if (!strcmp(option, "--noise")) noise = atof(value);
         if (!strcmp(option, "--trace")) trace = fopen(value, "w");
         n++;
@@ -202,7 +203,7 @@ int main(int count, char **args) {
     adc = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, 0);
     avr_irq_register_notify(serial + UART_IRQ_OUTPUT, said, NULL);
     highest = lowest = avr->ramend;
-    plant_start(&spring, strength);
+    plant_start(&spring, strength, stroke);
     if (trace)
         setvbuf(trace, NULL, _IOLBF, 0); /* whole, however the program ends */
     for (;;) {

@@ -5,7 +5,8 @@
  * WIRE, a wire against a spring: cosine kinetics (Liang and Rogers 1990), whose temperatures rise with
  * the stress, and which bind heat while the wire pulls.
  * With a strength above 0 it is another actuator, whose input acts at once, as that of a piezo: the
- * plays of the spring, and a stroke that is so many times as long. */
+ * plays of the spring, and a stroke that is so many times as long. `stroke` does that to spring and
+ * wire. */
 #ifndef PLANT_H
 #define PLANT_H
 #include <math.h>
@@ -21,6 +22,7 @@
 
 typedef struct {
     double heat, mm, play[PLAYS], strength; /* strength: 0 for the spring, WIRE, or above 0 */
+    double stroke;                          /* of spring and wire, over STROKE */
     double cold, scale;                     /* share that is martensite, and of the branch */
     int warms;
 } plant;
@@ -54,7 +56,7 @@ static void wire_step(plant *self, double drive, double dt) {
     }
     self->heat = low;
     self->cold = martensite(self, low);
-    self->mm = 1 + STROKE * (1 - self->cold);
+    self->mm = 1 + self->stroke * STROKE * (1 - self->cold);
 }
 
 static void plant_step(plant *self, double drive, double dt) {
@@ -71,12 +73,13 @@ static void plant_step(plant *self, double drive, double dt) {
         self->play[n] = fmin(fmax(self->play[n], self->heat - half), self->heat + half);
         sum += 1 / (1 + exp(-(self->play[n] - 60) / (4 + 0.5 * n)));
     }
-    self->mm = 1 + (self->strength > 0 ? self->strength : 1) * STROKE * sum / PLAYS;
+    self->mm = 1 + (self->strength > 0 ? self->strength : self->stroke) * STROKE * sum / PLAYS;
 }
 
-static void plant_start(plant *self, double strength) {
+static void plant_start(plant *self, double strength, double stroke) {
     int n;
     self->strength = strength;
+    self->stroke = stroke;
     self->heat = ROOM;
     self->cold = self->scale = 1;
     self->warms = 0;
@@ -89,6 +92,6 @@ static void plant_start(plant *self, double strength) {
  * times as long, so many times as much: that is the same way. */
 static double reference(const plant *self, double time) {
     double wave = cos(0.2 * time) * (1 + 0.3 * sin(0.047 * time));
-    return self->strength > 0 ? 1 + self->strength * (3.5 - 1.6 * wave) : 5 - 2 * wave;
+    return self->strength > 0 ? 1 + self->strength * (3.5 - 1.6 * wave) : 1 + self->stroke * (4 - 2 * wave);
 }
 #endif

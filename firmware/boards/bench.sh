@@ -7,6 +7,12 @@ fail() { say "$*"; exit 1; }
 # Whether an expression of numbers holds.
 holds() { awk "BEGIN { exit !($1) }"; }
 
+# A library for a model that does not matter: the sketch `device` is the same with any.
+bare() { # BOARD
+    "$here/../boards/model" 5 none > bare.json
+    "$hysteron" export arduino bare.json -o bare --gains 1,10 --board "$1" > /dev/null
+}
+
 # Records MODEL.json. `lost_s`: a machine that has much to do may stop the board for a while.
 record() { # MODEL DEVICE OPTIONS…
     awk 'BEGIN { print "time,drive"
@@ -30,17 +36,20 @@ END
 
 gain() { sed "s/.*\"$1\":\([-0-9.e]*\).*/\1/" <<< "$gains"; }
 
-# Controls with the gains of the library: `gains` is what `export arduino --json` said.
+# Controls with the gains of the library: `gains` is what `export arduino --json` said. GAIN is another
+# gain, and LEARNER learns.
 control() { # NAME DEVICE SECONDS
+    local kind=inverse-pid learner=
+    [ -z "${LEARNER:-}" ] || kind=adaptive-inverse-pid learner=", learner = \"$LEARNER\""
     cat > "$1.toml" << END
 mode = "control"
 log = "$1.csv"
 duration_s = $3
 device = { $2 }
-reference = { table = "reference.csv" }
+reference = { table = "${REFERENCE:-reference.csv}" }
 ${LIMITS:-}
 safety = { lost_s = 2 }
-controller = { kind = "inverse-pid", model = "${MODEL:-wire.json}", delay = 0, proportional = $(gain gain), integral_s = $(gain integral_s), derivative_s = $(gain derivative_s) }
+controller = { kind = "$kind", model = "${MODEL:-wire.json}", delay = 0, proportional = ${GAIN:-$(gain gain)}, integral_s = $(gain integral_s), derivative_s = $(gain derivative_s)$learner }
 END
     "$hysteron" run "$1.toml" > "$1.said" 2> "$1.log"
 }

@@ -189,7 +189,7 @@ int main() {
   if (world.is_there != THERE) {
     world = outside();
     world.is_there = THERE;
-    plant_start(&world.spring, STRENGTH);
+    plant_start(&world.spring, STRENGTH, 1);
   }
   trace.begin(0);
   skip();

@@ -4,18 +4,13 @@
  * The slider is read at A0, the knob at A1, and PWM at pin 9 drives the gate of a MOSFET. Set the
  * numbers below to your parts first. Tools > Serial Plotter shows wanted, position and drive. */
 #include <@name@.h>
-#if defined(__AVR__)
-#include <avr/wdt.h>
-#endif
+@watchdog@
 @board@
 
 // ---- Your parts: as in the sketch `device`, which the model was recorded with ----
-const uint8_t SENSOR = A0, KNOB = A1, GATE = 9;
-const float MM_PER_COUNT = 10.0 / 1023;       // of slider and knob
+const uint8_t KNOB = A1;                // a potentiometer that is read as the slider
 const float LOWEST = @lowest@, HIGHEST = @highest@; // where the knob may lead: the model's range
-const float MM_LOW = -1, MM_HIGH = 11;        // beyond them the drive goes off
-const float HEAT_S = 5;                       // so many seconds of the drive are averaged ...
-const float HEAT_MOST = 0.8;                  // ... and where the mean comes to this, it goes off
+@parts@
 
 // ---- The model: its inverse, and what follows the drive, each with its memory ----
 @states@
@@ -26,22 +21,8 @@ const unsigned long DT_US = @name@_control.dt * 1e6 + 0.5;
 unsigned long due;
 uint8_t unsaid;        // samples since the last line
 unsigned int overruns; // samples that came too late
-float drive, heat;
 bool is_off = false;
 float at = NAN, speed; // the knob, and how far it goes in a sample
-
-void apply(float wanted) {
-  drive = constrain(wanted, 0, 1); // the controller's own range is that of --drive-range
-  analogWrite(GATE, (int)(drive * 255 + 0.5));
-}
-
-/* A position, or NaN where nothing is connected: with a resistor to ground that reads zero. */
-float read(uint8_t pin) {
-  unsigned int sum = 0, count;
-  bool there = true;
-  for (uint8_t n = 0; n < 16; n++) sum += count = analogRead(pin), there &= count > 2;
-  return there ? sum / 16.0 * MM_PER_COUNT : NAN; // the mean has less noise
-}
 
 /* Follows the knob without its noise, which the inverse would answer with large drives. */
 void follow(float knob) {
@@ -63,15 +44,11 @@ void setup() {
 @shadow_start@
   // After a restart the wire may be hot, and the model starts cold: it begins when both are.
   due = micros() + (unsigned long)(HEAT_S * 1e6);
-#if defined(__AVR__)
   wdt_enable(WDTO_1S); // a sketch that hangs starts again, with the drive off
-#endif
 }
 
 void loop() {
-#if defined(__AVR__)
   wdt_reset();
-#endif
   if ((long)(micros() - due) < (long)DT_US) return;
   due += DT_US;
   if (micros() - due >= DT_US) overruns++;
@@ -84,9 +61,8 @@ void loop() {
   const int code = hys_controller_step(&controller, wanted, ahead, HYS_HOLD, mm, &action);
   if (code != HYS_OK) is_off = true;
 
-  // What keeps the wire whole. Off is off, until the board is started again.
-  heat += (drive - heat) * DT_US * 1e-6 / HEAT_S;
-  if (heat > HEAT_MOST || mm < MM_LOW || mm > MM_HIGH) is_off = true;
+  // Off is off, until the board is started again.
+  if (is_beyond(mm, DT_US * 1e-6)) is_off = true;
   if (action.status & HYS_SAFE) is_off = true; // no reading, or one that stands still
 @shadow_step@
   apply(is_off ? 0 : action.drive);

@@ -43,7 +43,8 @@ pub struct Arduino {
 /// model does not fit twice, the sketch does without the state that follows the drive. With
 /// [`ArduinoOptions::adaptation`] `standalone` learns, and the tables are in RAM.
 ///
-/// Files of an earlier export that were not edited since are replaced, all together or not at all.
+/// Files of an earlier export that were not edited since are replaced, all together or not at all. Its
+/// `standalone` goes where this model has none; one that was edited is refused.
 ///
 /// ```
 /// use hysteron::control::{Gains, Safety, Scheme};
@@ -104,6 +105,10 @@ pub fn arduino<'a>(
     let names = export.files.iter().map(|file| Path::new("src").join(file));
     let all = names.zip(sources).chain(own);
     let mut folder = AtomicFolder::create(target, None)?;
+    if !standalone {
+        // One of another model would drive this one.
+        folder.without(texts::ALONE)?;
+    }
     let mut files = Vec::new();
     for (name, text) in all {
         folder.file(&name, |path| {

@@ -37,6 +37,8 @@ pub struct AtomicFolder {
     workshop: Workshop,
     /// Paths relative to the folder.
     files: Vec<PathBuf>,
+    /// Those of files that are not to be there.
+    gone: Vec<PathBuf>,
 }
 
 impl AtomicFolder {
@@ -80,7 +82,20 @@ impl AtomicFolder {
             below,
             workshop,
             files: Vec::new(),
+            gone: Vec::new(),
         })
+    }
+
+    /// Removes a file of an earlier work when the new ones appear, and its folder if that is empty
+    /// then. One that is not ours is refused, as where a new file has its name.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn without(&mut self, name: impl Into<PathBuf>) -> Result<()> {
+        let name = name.into();
+        self.check(&name)?;
+        self.gone.push(name);
+        Ok(())
     }
 
     /// Refuses files with these names before any work, if they would be refused at the end.
@@ -125,7 +140,7 @@ impl AtomicFolder {
         if self.own.is_none() {
             self.write_manifests()?;
         }
-        self.claim(&self.files)?;
+        self.claim(self.files.iter().chain(&self.gone))?;
         let moved = self.take_places();
         moved.map_err(|source| self.fault(Path::new(""), source))
     }
@@ -214,12 +229,31 @@ impl AtomicFolder {
         // A signal that ends the program must wait until all files have their names.
         let _unfinished = unfinished();
         let mut moves = Moves::new(self.workshop.path().join(OLD))?;
-        if let Err(error) = self.put(&mut moves, &new, &self.place) {
+        let put = self.put(&mut moves, &new, &self.place);
+        if let Err(error) = put.and_then(|()| self.remove_gone(&mut moves)) {
             moves.undo();
             return Err(error);
         }
         sync_folder(&self.place);
         sync_folder(folder_of(&self.place));
+        Ok(())
+    }
+
+    fn remove_gone(&self, moves: &mut Moves) -> io::Result<()> {
+        for path in self.gone.iter().map(|name| self.target.join(name)) {
+            if fs::symlink_metadata(&path).is_err() {
+                continue;
+            }
+            moves.remove(&path)?;
+            let folder = folder_of(&path);
+            let list = folder.join(manifest::NAME);
+            let all = Manifest::read(folder);
+            if list.exists() && !all.names().any(|name| folder.join(name).exists()) {
+                moves.remove(&list)?;
+                // A folder with files of others stays.
+                let _ = fs::remove_dir(folder);
+            }
+        }
         Ok(())
     }
 

@@ -4,7 +4,8 @@ use crate::port::{count, depth, note, say};
 use crate::run::{Core, FORWARD, MOST, Memory, ModelData, Number, Tally, made, note_all};
 use core::hint::black_box;
 use hysteron_core::{
-    Direction, Error, Model, Parts, Placed, Plane, Rates, StageState, Stages, Target, Turn, Wanted, table_len, turn_capacity,
+    Direction, Error, Model, Parts, Placed, Plane, Rates, StageState, Stages, Target, Turn, Wanted,
+    table_len, turn_capacity,
 };
 
 /// Model and stages as in the model file.

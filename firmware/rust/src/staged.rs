@@ -8,9 +8,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// The stages that are measured, each alone, and all of them.
-pub const MEASURED: [&str; 7] = [
-    "body", "load", "weights", "spacing", "creep", "lag", "all",
-];
+pub const MEASURED: [&str; 7] = ["body", "load", "weights", "spacing", "creep", "lag", "all"];
 /// The levels of the models that are measured.
 pub const STAGED_LEVELS: usize = 20;
 /// The time step of the runs that are measured, in seconds.
@@ -53,7 +51,9 @@ pub fn all(vectors: &Path) -> (Vec<StagedModel>, Vec<StagedRun>) {
             runs.len() > before,
             "{name} has no run with a fixed time step"
         );
-        models.push(staged(&name.replace('-', "_"), file["model"].clone(), dt));
+        // Names in C have at most 31 letters.
+        let c_name = name.replace('-', "_").replace("registration", "reg");
+        models.push(staged(&c_name, file["model"].clone(), dt));
     }
     for what in MEASURED {
         let staged = measured(what);
@@ -80,7 +80,9 @@ fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
         .collect();
     let varies = parts.len() > 1;
     let constants = constants(&json);
-    let timed = constants.iter().any(|(name, _)| TIMED.contains(&name.as_str()));
+    let timed = constants
+        .iter()
+        .any(|(name, _)| TIMED.contains(&name.as_str()));
     let drive = &json["drive"];
     StagedModel {
         constants,
@@ -96,7 +98,7 @@ fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
 }
 
 /// Constants of stages that depend on time.
-const TIMED: [&str; 3] = ["tau_heating", "creep_taus", "lag"];
+const TIMED: [&str; 4] = ["tau_heating", "creep_taus", "lag", "ring_frequency"];
 
 /// The constants of a model file, by their names; those of version 3 as they stand there.
 fn constants(json: &Value) -> Vec<(String, Vec<f64>)> {
@@ -186,6 +188,12 @@ fn measured(what: &str) -> StagedModel {
         true => json!([part(0.0, 1.0), part(0.5, 1.25), part(0.25, 0.875)]),
         false => json!([part(0.0, 1.0)]),
     };
+    if there("weights") {
+        // Those of the file are the parts' in the middle of the loads: 1/4, 1/2 and 1/4 of them.
+        let weights = plain.weights.iter().map(|weight| 1.09375 * weight);
+        json["weights"] = weights.collect();
+        json["output"]["offset"] = 0.3125.into();
+    }
     if there("load") || there("weights") {
         json["load"] = json!({"name": "stress", "min": 0.0, "max": 200.0, "parts": parts});
     }
@@ -215,7 +223,10 @@ fn measured(what: &str) -> StagedModel {
 fn measured_runs(staged: &StagedModel, number: usize) -> Vec<StagedRun> {
     let total: f64 = staged.model.weights.iter().sum();
     let spacing = staged.constants.iter().find(|(name, _)| name == "spacing");
-    let (low, high) = match (&staged.drive, spacing.map(|(_, corners)| corners.as_slice())) {
+    let (low, high) = match (
+        &staged.drive,
+        spacing.map(|(_, corners)| corners.as_slice()),
+    ) {
         (Some(range), _) => *range,
         (None, Some([low, .., high])) => (*low, *high),
         _ => (staged.model.min, staged.model.max),

@@ -8,6 +8,22 @@ use std::path::PathBuf;
 const DEVICE: &str = include_str!("../../arduino/device.ino");
 const STANDALONE: &str = include_str!("../../arduino/standalone.ino");
 
+/// Where the sketch that drives alone is.
+pub(super) const ALONE: &str = "examples/standalone/standalone.ino";
+
+/// What both sketches have: the parts, how they are read and driven, and their limits.
+const PARTS: &str = include_str!("../../arduino/parts.ino");
+
+/// The watchdog of an AVR.
+const WATCHDOG: &str = "\
+#if defined(__AVR__)
+#include <avr/wdt.h>
+#else
+#define wdt_enable(time) // of the core, if it has one
+#define wdt_reset()
+#endif
+";
+
 /// The linker of a smaller board would say that a section does not fit.
 const MEGA: &str = "\
 #if defined(RAMEND) && RAMEND < 0x21FF
@@ -105,15 +121,20 @@ pub(super) fn files(export: &CExport, standalone: Option<String>) -> Vec<(PathBu
         keywords.extend(words.iter().map(|word| format!("{word}\t{kind}\n")));
     }
     keywords.extend(model_words);
-    let sketch = |name: &str| PathBuf::from(format!("examples/{name}/{name}.ino"));
     let mut files = vec![
         ("library.properties".into(), properties),
         ("library.json".into(), json),
         ("keywords.txt".into(), keywords),
-        (sketch("device"), DEVICE.into()),
+        ("examples/device/device.ino".into(), shared(DEVICE)),
     ];
-    files.extend(standalone.map(|text| (sketch("standalone"), text)));
+    files.extend(standalone.map(|text| (ALONE.into(), text)));
     files
+}
+
+/// A sketch with what both have.
+fn shared(sketch: &str) -> String {
+    let text = sketch.replace("@parts@\n", PARTS);
+    text.replace("@watchdog@\n", WATCHDOG)
 }
 
 /// The sketch for this model.
@@ -165,7 +186,7 @@ pub(super) fn standalone(model: &Model, export: &CExport, follows: bool, board: 
     let learner = |text: &'static str| if learns { text } else { "" };
     let (off, on) = model.output_range();
     let (low, high) = (off.min(on), off.max(on));
-    STANDALONE
+    shared(STANDALONE)
         .replace("@board@\n", if board == Board::Mega { MEGA } else { "" })
         .replace("@states@\n", &states)
         .replace("@start@\n", &starts.concat())

@@ -4,6 +4,7 @@ use hysteron::control::{Gains, Safety, Scheme};
 use hysteron::{Destination, FirstOrder, Model, Operator, Plane, Sign};
 use hysteron_core::operator_count;
 use hysteron_export::{Arduino, ArduinoOptions, Board, BoardMemory, CSampling, arduino};
+use serde_json::json;
 use std::path::Path;
 
 fn model(levels: usize, body: bool) -> Model {
@@ -97,6 +98,15 @@ fn the_files_are_those_that_the_ide_looks_for() {
         assert!(sketch.lines().count() <= 150 && sketch.is_ascii());
         assert!(sketch.lines().all(|line| line.len() <= 100), "{name}");
     }
+    // The parts of both sketches are one text.
+    let [device, standalone] = ["device", "standalone"].map(|name| {
+        let text = read(&format!("examples/{name}/{name}.ino"));
+        let lines = text.lines().map(str::to_owned);
+        let parts = lines.skip_while(|line| !line.starts_with("const uint8_t SENSOR"));
+        parts.take(26).collect::<Vec<_>>()
+    });
+    assert_eq!(device, standalone);
+    assert_eq!(device.last().map(String::as_str), Some("}"), "{device:?}");
     // Written again; but a sketch that was edited is kept.
     write(&model(12, false), &library, Board::Uno).unwrap();
     let mine = library.join("examples/device/device.ino");
@@ -133,6 +143,29 @@ fn what_drives_alone_has_a_share_of_full_power() {
     }
 }
 
+/// A sketch for another model would drive this one: beside files of the user, too.
+#[test]
+fn no_sketch_of_an_earlier_export_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("wire");
+    let export = |drives| driven(&model(8, false), &library, (Board::Uno, false), drives);
+    let own = library.join("examples/mine/mine.ino");
+    let sketch = library.join("examples/standalone/standalone.ino");
+    export((0.0, 0.7)).unwrap();
+    std::fs::create_dir_all(own.parent().unwrap()).unwrap();
+    std::fs::write(&own, "mine").unwrap();
+    std::fs::write(&sketch, "edited").unwrap();
+    let error = export((20.0, 80.0)).unwrap_err().to_string();
+    assert!(error.contains("standalone.ino"), "{error}");
+    assert_eq!(std::fs::read_to_string(&sketch).unwrap(), "edited");
+    std::fs::remove_file(&sketch).unwrap();
+    export((0.0, 0.7)).unwrap();
+    assert!(sketch.exists());
+    export((20.0, 80.0)).unwrap();
+    assert!(!sketch.parent().unwrap().exists());
+    assert_eq!(std::fs::read_to_string(&own).unwrap(), "mine");
+}
+
 #[test]
 fn what_does_not_fit_is_refused_with_numbers() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,6 +177,12 @@ fn what_does_not_fit_is_refused_with_numbers() {
             .follows
     };
     assert!(follows(5) && !follows(20));
+    // With a body ten levels have it: without it nobody sees a slider that jams.
+    assert!(
+        write(&model(10, true), &folder.path().join("warm"), Board::Uno)
+            .unwrap()
+            .follows
+    );
     std::fs::remove_dir_all(&library).unwrap();
     let error = write(&model(60, false), &library, Board::Uno).unwrap_err();
     let said = error.to_string();
@@ -170,6 +209,76 @@ fn what_does_not_fit_is_refused_with_numbers() {
     let mega = write(&model(60, true), &library, Board::Mega).unwrap();
     assert!(mega.follows && mega.ram <= 8192, "{mega:?}");
     write(&model(200, true), &library, Board::Large).unwrap();
+}
+
+/// The stages that the bits of a number name, around five levels.
+fn of_stages(bits: usize) -> Model {
+    let has = |bit: usize| bits >> bit & 1 == 1;
+    let mut file: serde_json::Value = serde_json::from_str(&model(5, false).to_json()).unwrap();
+    file["version"] = 3.into();
+    if has(0) {
+        file["thermal"] = json!({
+            "kind": "first-order", "ambient": -0.5, "gain": 2.0, "tau_heating": 2.0,
+            "tau_cooling": 2.0,
+        });
+    }
+    let mut stages = serde_json::Map::new();
+    for (bit, name, numbers) in [
+        (1, "latent", vec![0.3]),
+        (2, "curve_sums", vec![0.0, 2.0, 3.0]),
+        (2, "curve_outputs", vec![1.0, 2.0, 4.0]),
+        (3, "ring_frequency", vec![2.0]),
+        (3, "ring_damping", vec![0.1]),
+        (4, "knots", vec![0.0, 0.6, 1.0]),
+        (4, "rising", vec![0.1, 0.7, 1.1]),
+    ] {
+        if has(bit) {
+            stages.insert(name.into(), numbers.into());
+        }
+    }
+    file["stages"] = stages.into();
+    if has(5) {
+        file["creep"] = json!([{"coefficient": 0.1, "tau": 1.0}]);
+    }
+    if has(6) {
+        file["spacing"] = vec![0.0, 0.1, 0.3, 0.5, 0.8, 1.0].into();
+    }
+    if has(7) {
+        file["lag"] = 0.2.into();
+    }
+    Model::from_json(&file.to_string()).unwrap()
+}
+
+/// Of all combinations of stages: what is written fits, what is refused is not there, and a stage less
+/// fits too. `firmware/avr/run` compiles some of them.
+#[test]
+fn a_model_that_does_not_fit_with_its_stages_is_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut fits = [None; 256];
+    for bits in (0..256).filter(|bits| bits & 3 != 2) {
+        let library = folder.path().join(format!("stages_{bits}"));
+        let made = write(&of_stages(bits), &library, Board::Uno);
+        fits[bits] = Some(made.is_ok());
+        match made {
+            Ok(memory) => assert!(memory.flash <= 32_256 && memory.ram <= 2048, "{bits}"),
+            Err(error) => {
+                assert!(
+                    error.to_string().contains("bytes of flash"),
+                    "{bits}: {error}"
+                );
+                assert!(!library.exists(), "{bits}");
+            }
+        }
+    }
+    for bits in (0..256).filter(|&bits| fits[bits] == Some(true)) {
+        let less = (0..8).map(|bit| bits & !(1 << bit));
+        assert!(
+            less.into_iter().all(|less| fits[less] != Some(false)),
+            "{bits}"
+        );
+    }
+    // Both happen.
+    assert!(fits.contains(&Some(true)) && fits.contains(&Some(false)));
 }
 
 #[test]

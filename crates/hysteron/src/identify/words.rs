@@ -128,7 +128,7 @@ pub const FIT_OPTIONS: [FitOption; 20] = [
         name: "dynamics",
         default: "`auto`",
         range: "`auto`, `off`, `lag`, `ring`",
-        purpose: "with time: a resonance of the output; `auto`: where the recording excites one, if \
+        purpose: "with time: a resonance of the output, or a lag of up to four samples; `auto`: where \
                   that is better by 10 %; `lag` is `lag auto`",
     },
     FitOption {

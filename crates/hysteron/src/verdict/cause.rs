@@ -1,5 +1,6 @@
 //! What is behind an error.
 
+use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind, parts_after};
 use crate::evaluate::Evaluation;
 use crate::model::FitSummary;
@@ -128,7 +129,7 @@ impl Cause {
 pub(super) fn of_record(fit: &FitSummary, on_others: bool) -> Vec<Cause> {
     let loads = fit.other.get("load");
     let percent = loads.and_then(|found| found["left_out_percent"].as_f64());
-    let loads = percent.filter(|percent| *percent > super::USABLE && !on_others);
+    let loads = percent.filter(|percent| *percent > USABLE && !on_others);
     let few = fit
         .confidence
         .as_ref()

@@ -2,6 +2,13 @@
 
 use serde::Serialize;
 
+/// Errors up to this, in percent, are good.
+pub(super) const GOOD: f64 = 1.0;
+/// So are errors up to this many deviations of the noise: no model predicts that.
+pub(super) const OF_NOISE: f64 = 1.5;
+/// Errors up to this, in percent, are usable.
+pub(super) const USABLE: f64 = 5.0;
+
 /// What a model is good for.
 ///
 /// The error counts, in percent of the range of the output, on data that the model was not fitted

@@ -25,6 +25,7 @@ use crate::recording::{Quantity, Recording, no_recordings};
 use crate::rivals::{Rival, RivalKind, SMALL, wins};
 use crate::series::Errors;
 use crate::series::noise::noise;
+use grade::{GOOD, OF_NOISE, USABLE};
 use serde::Serialize;
 use tested::{Tested, on_others};
 
@@ -96,12 +97,6 @@ pub struct Verdict {
     pub output: Quantity,
 }
 
-/// Errors up to this, in percent, are good.
-const GOOD: f64 = 1.0;
-/// So are errors up to this many deviations of the noise: no model predicts that.
-const OF_NOISE: f64 = 1.5;
-/// Errors up to this, in percent, are usable.
-const USABLE: f64 = 5.0;
 /// The rival of an evaluation.
 const LINE: &str = "a straight line fitted to this very recording";
 /// The inverse of so many samples is tested. More would cost as much as some fits.
