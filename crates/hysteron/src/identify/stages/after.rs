@@ -20,6 +20,10 @@ type After = StageConstants<f64>;
 /// first, then the others.
 const BLOCKS: usize = 6;
 
+/// A lag of a few samples can be judged by shorter blocks. The error of long ones is that of loops
+/// that the others do not have, and it hides a lag.
+const SHORT_BLOCKS: usize = 24;
+
 /// Creep and lag have to reduce the error on blocks left out by this share. Blocks of one recording
 /// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out lost
 /// 13 % on a recording at another frequency.
@@ -90,7 +94,8 @@ pub(super) fn find_short_lag(
     if !recordings.iter().all(passes) {
         return Ok(None);
     }
-    let search = Search::new(recordings, options, open, progress)?;
+    let mut search = Search::new(recordings, options, open, progress)?;
+    search.blocks = SHORT_BLOCKS;
     let bare = search.fitted(&After::default())?;
     if search.creep(0, search.step)?.1 > (1.0 - HINT) * bare {
         return Ok(None);
@@ -230,6 +235,8 @@ struct Search<'a> {
     /// For what is fitted.
     fine: FitOptions,
     progress: Progress<'a>,
+    /// Into how many blocks of time a recording is divided.
+    blocks: usize,
     /// Standard deviation of the white noise of the outputs, in percent of their range.
     noise: f64,
     /// Sampling step, and the time that the longest recording takes.
@@ -275,6 +282,7 @@ impl<'a> Search<'a> {
             coarse,
             fine,
             progress,
+            blocks: BLOCKS,
             noise: noise_percent(recordings),
             step,
             longest,
@@ -427,7 +435,7 @@ impl<'a> Search<'a> {
         self.progress.tell("creep and lag", f64::NAN)?;
         let seen = before(after, self.recordings)?;
         let mut problem = Problem::new(&seen, options)?;
-        let block = |recording: &Recording, n: usize| n * BLOCKS / recording.len();
+        let block = |recording: &Recording, n: usize| n * self.blocks / recording.len();
         let blocks: Vec<usize> = seen
             .iter()
             .flat_map(|recording| (0..recording.len()).map(|n| block(recording, n) % 2))
