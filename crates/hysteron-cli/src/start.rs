@@ -52,7 +52,8 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let verdict = Verdict::of_fit(&model, &recordings)?;
     let advice = prepare::advice(&model, &recordings, &args.prepare)?;
     let prepared = args.prepare.prepare || advice.iter().any(Advice::is_cured_by_preparation);
-    let commands = commands(args, columns, prepared);
+    let prepared = prepared && (args.prepare.prepare || summary.doubts.is_empty());
+    let commands = commands(args, columns, prepared, step_of(&model, &recordings));
     if let Some(file) = file {
         file.commit_with(model.to_json().as_bytes())?;
     }
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
         return print(&object.to_string());
     }
     let written = args.out.as_ref().map(|out| format!("\n{}", out.display()));
-    let text = to_text(&summary, &model);
+    let text = to_text(&summary, &model)?;
     print(&(text + &written.unwrap_or_default()))?;
     print(&format!("\n{}", text::verdict(&verdict)))?;
     for advice in &advice {
@@ -151,7 +152,7 @@ fn fit(recordings: &[Recording]) -> Result<Model> {
     Ok(model)
 }
 
-fn to_text(summary: &RecordingSummary, model: &Model) -> String {
+fn to_text(summary: &RecordingSummary, model: &Model) -> Result<String> {
     let mut lines = vec![format!(
         "{} samples, {} reversals of the input, {} of them larger than 1 % of its range",
         summary.samples, summary.input.reversals_of_any_size, summary.input.reversals,
@@ -164,10 +165,38 @@ fn to_text(summary: &RecordingSummary, model: &Model) -> String {
             fit.nrmse_percent,
         ));
     }
-    lines.join("\n")
+    let stages = hysteron::inspect_model(model)?.stages.into_iter();
+    let stages = stages.filter(|stage| stage.name != "spacing");
+    lines.extend(stages.map(|stage| {
+        let constants = stage.constants.iter().map(|constant| {
+            let numbers = constant.numbers.iter().map(|number| text::number(*number));
+            let unit = constant.unit.as_deref().unwrap_or_default();
+            format!(
+                "{} {} {unit}",
+                constant.name,
+                numbers.collect::<Vec<_>>().join(" ")
+            )
+        });
+        let constants = constants.collect::<Vec<_>>().join(", ");
+        format!("{}: {}", stage.name, constants.trim_end())
+    }));
+    Ok(lines.join("\n"))
 }
 
-fn commands(args: &args::Begin, columns: Columns<'_>, prepared: bool) -> Vec<String> {
+/// The time between samples, for a model that needs it.
+fn step_of(model: &Model, recordings: &[Recording]) -> Option<f64> {
+    let time = recordings.first()?.time.as_ref()?;
+    let steps = time.len().checked_sub(1).filter(|steps| *steps > 0)?;
+    let step = (time[steps] - time[0]) / steps as f64;
+    (model.is_timed() && step > 0.0).then_some(step)
+}
+
+fn commands(
+    args: &args::Begin,
+    columns: Columns<'_>,
+    prepared: bool,
+    step: Option<f64>,
+) -> Vec<String> {
     let file = shell_word(&args.file.display().to_string());
     let mut named = format!(
         "--input {} --output {}",
@@ -185,10 +214,13 @@ fn commands(args: &args::Begin, columns: Columns<'_>, prepared: bool) -> Vec<Str
     if prepared {
         named += " --prepare";
     }
+    let dt = step.map_or(String::new(), |step| {
+        format!(" --dt {}", text::number(step))
+    });
     let mut commands = vec![
         format!("hysteron fit {file} {named} -o model.json"),
         format!("hysteron evaluate model.json {file} {named} --report report"),
-        "hysteron export c model.json -o model-c".to_owned(),
+        format!("hysteron export c model.json{dt} -o model-c"),
     ];
     if cfg!(feature = "studio") {
         commands.insert(0, format!("hysteron studio {file}"));

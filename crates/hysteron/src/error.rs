@@ -72,7 +72,7 @@ pub enum Error {
     #[error("design: {0}")]
     Design(String),
     /// A thermal body cannot be simulated or identified.
-    #[error("thermal body: {0}")]
+    #[error("{0}")]
     Thermal(String),
     /// A controller cannot be made with these settings.
     #[error("controller: {0}")]

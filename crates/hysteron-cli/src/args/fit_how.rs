@@ -123,7 +123,8 @@ pub(crate) struct Stages {
     /// the number of terms, up to 4. Needs --time
     #[arg(long, value_name = "N", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) creep: Step,
-    /// Lag of the output: `auto` (as for --creep), `off`, or its time constant in s. Needs --time
+    /// Lag of the output: `auto` (as for --creep, of any length), or its time constant in s; `off`
+    /// leaves it to --dynamics. Needs --time
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
     /// What happens behind the operators in time: a ring, which is a resonance of the second order,

@@ -67,6 +67,8 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
+    /// A lag that is longer than what is taken unasked would predict what was left out.
+    LongLag,
     /// Neither a ring nor a lag was looked for, because more than the end of a recording was held out.
     NoDynamics,
     /// The first input does not determine the state of some operators, and all of these were taken
@@ -135,9 +137,13 @@ impl fmt::Display for Advice {
                      of the fit is"
                 )
             }
+            Self::LongLag => f.write_str(
+                "the output comes late: a lag of more than four samples would predict what was left \
+                 out better, and its inverse multiplies noise by more than 4.5",
+            ),
             Self::NoDynamics => f.write_str(
                 "neither a ring nor a lag was looked for: they need every sample before a row, and \
-                 branches were held out",
+                 more than the end was held out",
             ),
             Self::OpenStart { operators } => write!(
                 f,
@@ -185,6 +191,7 @@ impl Advice {
                 "record more branches, and test the model on another recording",
                 [],
             ),
+            Self::LongLag => Remedy::new("take it with {}", [Setting::word("lag", "auto")]),
             Self::NoDynamics => Remedy::new(
                 "hold out rows at the end or another recording with {}, or turn the search off with {}",
                 [Setting::any("hold-out"), Setting::word("dynamics", "off")],
@@ -273,6 +280,13 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
                 operators: plane.operators(),
                 rank: fit.confidence.as_ref().map(|found| found.rank),
             });
+        }
+        if fit
+            .other
+            .get("lag")
+            .is_some_and(|found| found["longer"] == true)
+        {
+            advice.push(Advice::LongLag);
         }
         let operators = fit.open_at_start;
         if fit.start == Start::Off && operators as f64 > MANY_OPEN * plane.operators() as f64 {

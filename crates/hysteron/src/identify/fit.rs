@@ -451,6 +451,7 @@ impl<'a> Fit<'a> {
         }
         let mut model = kept::with_start(model, &seen, &options)?;
         kept::tell_errors(&mut model, recordings, |_| true)?;
+        kept::tell_left_out(&mut model);
         Ok(model)
     }
 }

@@ -109,3 +109,21 @@ pub(crate) fn tell_errors(
     }
     Ok(())
 }
+
+/// Tells the error on what was left out behind the stages, in the same measure as that of the fit.
+/// It was found with the stages undone, where noise is larger, by as much as that of the fit was.
+pub(crate) fn tell_left_out(model: &mut Model) {
+    let Some(fit) = &mut model.fit else { return };
+    let undone = fit.other.remove("undone");
+    let undone = undone.and_then(|found| found["rmse"].as_f64());
+    if let (Some(undone), Some(found)) = (undone, &mut fit.validation)
+        && undone > fit.rmse
+    {
+        let share = fit.rmse / undone;
+        found.rmse *= share;
+        found.nrmse_percent *= share;
+        for score in &mut found.scores {
+            score.rmse *= share;
+        }
+    }
+}

@@ -5,6 +5,7 @@ use super::parts::{ErrorPart, PartKind, parts_after};
 use crate::evaluate::Evaluation;
 use crate::model::FitSummary;
 use crate::recording::Recording;
+use crate::series::{branch_spans, usual_tolerance};
 
 /// Why a model is not better.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +70,8 @@ pub(super) const OUTSIDE: f64 = 0.2;
 const BELONGS: f64 = 80.0;
 /// A part of this share is worth a sentence.
 pub(super) const WORTH: f64 = 0.25;
+/// A delay of fewer samples is none.
+const LATE: f64 = 0.05;
 /// From this share of noise on, in the squared error, noise is what is behind it.
 const NOISY: f64 = 0.5;
 /// Fewer inputs outside the plane are the noise at its ends.
@@ -140,6 +143,17 @@ pub(super) fn of_record(fit: &FitSummary, on_others: bool) -> Vec<Cause> {
     loads.into_iter().chain(few).collect()
 }
 
+/// A model of two loops at most, on recordings that have no more: they may be the same.
+pub(super) fn few_loops(fit: &FitSummary, recordings: &[Recording]) -> Option<Cause> {
+    let branches = fit.confidence.as_ref()?.branches;
+    let of = |recording: &Recording| {
+        let tolerance = usual_tolerance(&recording.input);
+        branch_spans(&recording.input, tolerance).count()
+    };
+    let here: usize = recordings.iter().map(of).sum();
+    (branches.max(here) <= TWO_LOOPS).then_some(Cause::FewBranches { branches })
+}
+
 /// The inputs of an evaluation that the model does not know.
 pub(super) fn outside(evaluation: &Evaluation) -> Option<Cause> {
     let samples = evaluation.forward.samples.max(1);
@@ -174,6 +188,8 @@ pub(super) fn of_parts(recordings: &[Recording], modelled: &[f64], fitted: bool)
         false => &[],
     };
     let parts = parts_after(found, recordings, modelled).into_iter();
+    let is_some = |part: &ErrorPart| part.kind != PartKind::Late || part.size.abs() >= LATE;
+    let parts = parts.filter(is_some);
     let worth = parts.filter(|part| part.share >= WORTH && !found.contains(&part.kind));
     worth.map(Cause::Part).collect()
 }

@@ -235,13 +235,16 @@ impl Verdict {
                 output: first.output_quantity.clone(),
             },
         };
-        verdict.noise = verdict.noise.max(noise_of(recordings));
+        verdict.noise = noise_of(recordings, output);
         verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
         verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());
         let percent = verdict.percent.unwrap_or(f64::INFINITY);
         if percent > SMALL {
             let parts = cause::of_parts(recordings, output, was_fitted);
             verdict.causes.extend(parts);
+        }
+        if !was_fitted && let Some(fit) = &model.fit {
+            verdict.causes.extend(cause::few_loops(fit, recordings));
         }
         if percent > GOOD {
             verdict.causes.extend(readings::cause(recordings, output));
@@ -257,8 +260,15 @@ impl Verdict {
             true => f64::INFINITY,
             false => 0.0,
         });
+        // What a few numbers explain is no noise.
+        let explained = self
+            .causes
+            .iter()
+            .any(|cause| matches!(cause, Cause::Part(_) | Cause::Elsewhere { .. }));
         let by_error = match percent {
-            _ if self.rmse <= OF_NOISE * self.noise && percent <= USABLE => Grade::Good,
+            _ if self.rmse <= OF_NOISE * self.noise && percent <= USABLE && !explained => {
+                Grade::Good
+            }
             p if p <= GOOD => Grade::Good,
             p if p <= USABLE => Grade::Usable,
             _ => Grade::Poor,
@@ -291,7 +301,7 @@ impl Verdict {
         if self.basis == Basis::Fitted && self.grade != Grade::Poor {
             self.grade = Grade::Untested;
         }
-        if percent > SMALL {
+        if percent > SMALL && !explained {
             self.causes.extend(cause::of_noise(self.noise, self.rmse));
         }
         self.causes
@@ -361,13 +371,20 @@ fn worst(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Op
     })
 }
 
-/// The white noise of the readings, as a root mean square over recordings.
-fn noise_of(recordings: &[Recording]) -> f64 {
-    let each = recordings
-        .iter()
-        .map(|r| (r.len() as f64, noise(&r.output)));
-    let (samples, squares) = each.fold((0.0, 0.0), |(n, sum), (len, noise)| {
-        (n + len, sum + len * noise * noise)
-    });
+/// The white noise of the readings, as a root mean square over recordings. Where few samples are on
+/// a stroke, the signal looks like noise; what is left beside a model then tells more.
+fn noise_of(recordings: &[Recording], modelled: &[f64]) -> f64 {
+    let (mut samples, mut squares, mut first) = (0.0, 0.0, 0);
+    for recording in recordings {
+        let mut found = noise(&recording.output);
+        if let Some(modelled) = modelled.get(first..first + recording.len()) {
+            let pairs = recording.output.iter().zip(modelled);
+            let left: Vec<f64> = pairs.map(|(y, h)| y - h).collect();
+            found = found.min(noise(&left));
+        }
+        first += recording.len();
+        samples += recording.len() as f64;
+        squares += recording.len() as f64 * found * found;
+    }
     (squares / f64::max(samples, 1.0)).sqrt()
 }

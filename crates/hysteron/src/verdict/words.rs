@@ -85,7 +85,7 @@ impl Verdict {
             .as_ref()
             .map(|(name, rival)| format!("; {name} errs {rival:.2} %"));
         // Where a branch is the only one of its kind, leaving it out tells nothing of a new one.
-        let within = match self.causes.iter().any(is_few) {
+        let within = match self.causes.iter().any(is_few) && self.basis != Basis::OtherRecording {
             true => " within this recording, no promise for another",
             false => "",
         };
@@ -198,7 +198,17 @@ impl Verdict {
     /// What to do next.
     #[must_use]
     pub fn next(&self) -> Remedy {
-        let weightiest = self.causes.first();
+        let first = self.causes.first();
+        // To adapt the model to a drift or a delay would spoil it.
+        let moves = self.causes.iter().find(|cause| {
+            matches!(cause, Cause::Part(part) if matches!(part.kind, PartKind::Drift | PartKind::Late))
+        });
+        let weightiest = match first {
+            Some(Cause::Part(_)) => moves.or(first),
+            _ => first,
+        };
+        // A stage that depends on time cannot be asked for beside rows that are held out.
+        let can_be_late = self.has_time && self.basis != Basis::HeldOut;
         let is_good = self.grade == Grade::Good;
         match weightiest {
             _ if self.basis == Basis::Fitted && self.grade == Grade::Untested => {
@@ -231,6 +241,11 @@ impl Verdict {
                 PartKind::Offset | PartKind::Gain | PartKind::Shift => Remedy::new(
                     "adapt the model to this session (adapt), and compare again",
                     [],
+                ),
+                PartKind::Late if part.size < 0.0 => Remedy::new(
+                    "if the sensor of the input is slow, undo it with {}; else look whether rows of \
+                     input and output belong together",
+                    [Setting::word("sensor-lag", "auto")],
                 ),
                 PartKind::Late if self.has_time => Remedy::new(
                     "let the fit look for what comes late: {}, {}, or {} for a drive that heats",
@@ -276,6 +291,12 @@ impl Verdict {
                 let [load, time] = [Setting::any("load"), Setting::any("time")];
                 let [lag, thermal] = [Setting::word("lag", "auto"), Setting::on("thermal")];
                 match (self.has_load, self.has_time) {
+                    _ if self.has_time && !can_be_late => match self.has_load {
+                        true => Remedy::new(MORE, []),
+                        false => {
+                            Remedy::new(words(", or name what else moves the output: {}"), [load])
+                        }
+                    },
                     (false, false) => Remedy::new(
                         words(", or name what else moves the output: {}, {}"),
                         [load, time],

@@ -81,41 +81,52 @@ const UNASKED: f64 = 4.0;
 /// not looked for unasked.
 const HINT: f64 = 0.05;
 
-/// A short lag, where it predicts parts of the recordings that were left out; `None` where there is
-/// none, or where samples come at the same time.
+/// What was found of a lag that nobody asked for.
+pub(super) enum ShortLag {
+    /// None, or samples come at the same time.
+    None,
+    /// It predicts parts of the recordings that were left out.
+    Found(After, Report),
+    /// So would one, but it is longer than what is taken unasked.
+    Longer,
+}
+
+/// Looks for a short lag.
 pub(super) fn find_short_lag(
     recordings: &[Recording],
     options: &FitOptions,
     open: Open,
     progress: Progress<'_>,
-) -> Result<Option<(After, Report)>> {
+) -> Result<ShortLag> {
     let passes = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
     let passes = |recording: &Recording| recording.time.as_ref().is_some_and(passes);
     if !recordings.iter().all(passes) {
-        return Ok(None);
+        return Ok(ShortLag::None);
     }
     let mut search = Search::new(recordings, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
     let bare = search.fitted(&After::default())?;
     if search.creep(0, search.step)?.1 > (1.0 - HINT) * bare {
-        return Ok(None);
+        return Ok(ShortLag::None);
     }
     let longest = (UNASKED * search.step).min(SLOWEST * search.longest);
     let Some(lag) = search.lag_alone(longest)? else {
-        return Ok(None);
+        return Ok(ShortLag::None);
     };
     let mut best = search.creep(0, lag)?;
     search.refine_lag(&mut best)?;
-    if best.0.lag() > longest {
-        return Ok(None);
-    }
+    let longer = best.0.lag() > longest;
     let (without, with) = (search.judged(After::default())?, search.judged(best.0)?);
     let report = Report {
         without: without.left_out,
         with: with.left_out,
     };
     let is_worth = with.is_worth(&without, search.noise);
-    Ok(is_worth.then_some((with.after, report)))
+    Ok(match (is_worth, longer) {
+        (false, _) => ShortLag::None,
+        (true, true) => ShortLag::Longer,
+        (true, false) => ShortLag::Found(with.after, report),
+    })
 }
 
 pub(super) fn find(

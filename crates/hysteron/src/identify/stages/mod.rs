@@ -15,6 +15,7 @@ mod resonator;
 mod ring;
 mod spacing;
 
+use after::ShortLag;
 pub(crate) use after::check_time;
 use latent::Heated;
 pub use spacing::SpacingShape;
@@ -107,7 +108,14 @@ pub(crate) fn fit(
                 && asked.thermal == Thermal::None
                 && !loaded =>
         {
-            after::find_short_lag(&seen, &options, asked.open, progress)?
+            match after::find_short_lag(&seen, &options, asked.open, progress)? {
+                ShortLag::Found(after, report) => Some((after, report)),
+                ShortLag::Longer => {
+                    notes.insert("lag".to_owned(), json!({"longer": true}));
+                    None
+                }
+                ShortLag::None => None,
+            }
         }
         false => None,
     };
@@ -165,8 +173,13 @@ pub(crate) fn fit(
         found.curve = Some(bent.bend);
     }
     let model = fit_weights_without(&seen, &options, asked.outliers, progress)?;
+    let changes_noise = !found.behind.is_none();
     let mut model = model.with_stages(found)?;
     if let Some(fit) = &mut model.fit {
+        if changes_noise {
+            // What was left out was judged with the stages undone, which makes noise larger.
+            notes.insert("undone".to_owned(), json!({"rmse": fit.rmse}));
+        }
         fit.validation = validation;
         fit.other.extend(notes);
     }
