@@ -389,9 +389,16 @@ impl<'a> Fit<'a> {
         if delay.is_none() {
             return Ok((at_once, delay));
         }
-        let late = self.acting(&delay.of_recordings(recordings))?;
+        let mut late = self.acting(&delay.of_recordings(recordings))?;
         Ok(match delay::is_worth(&late, &at_once) {
-            true => (late, delay),
+            true => {
+                // A dead time takes a part of a longer lag, which is still to be told.
+                let lag = at_once.fit.and_then(|mut fit| fit.other.remove("lag"));
+                if let (Some(lag), Some(fit)) = (lag, &mut late.fit) {
+                    fit.other.insert("lag".to_owned(), lag);
+                }
+                (late, delay)
+            }
             false => (at_once, Delay::NONE),
         })
     }

@@ -77,8 +77,8 @@ pub(super) struct Report {
 /// inverse multiplies the noise of its target by more than 4.5.
 const UNASKED: f64 = 4.0;
 
-/// A lag of one sampling step has to reduce the error on what is fitted by this share, or a lag is
-/// not looked for unasked.
+/// A lag of one sampling step, or the longest that is taken, has to reduce the error on what is
+/// fitted by this share, or a lag is not looked for unasked.
 const HINT: f64 = 0.05;
 
 /// What was found of a lag that nobody asked for.
@@ -106,7 +106,9 @@ pub(super) fn find_short_lag(
     let mut search = Search::new(recordings, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
     let bare = search.fitted(&After::default())?;
-    if search.creep(0, search.step)?.1 > (1.0 - HINT) * bare {
+    let hints = [search.step, UNASKED * search.step].map(|lag| search.creep(0, lag));
+    let [short, long] = hints;
+    if short?.1.min(long?.1) > (1.0 - HINT) * bare {
         return Ok(ShortLag::None);
     }
     let longest = (UNASKED * search.step).min(SLOWEST * search.longest);
