@@ -151,7 +151,8 @@ fn the_best_fit_is_one_of_those_with_the_same_test() {
     let mut session = Session::new(1 << 28);
     let file = session.open("run.csv", table(0.3).into()).unwrap();
     let fit = |session: &mut Session, levels: &str| {
-        let options = json!({"levels": levels, "bootstrap": "0", "smooth": "off"});
+        let options =
+            json!({"levels": levels, "bootstrap": "0", "smooth": "off", "dynamics": "off"});
         let request = json!({"request": "fit", "options": options});
         ask(session, request).unwrap()
     };
@@ -183,7 +184,8 @@ fn fits_of_other_data_with_one_test_are_compared() {
     let purpose =
         |file: Id, purpose: &str| json!({"request": "use", "file": file, "purpose": purpose});
     let fit = |levels: &str| {
-        let options = json!({"levels": levels, "bootstrap": "0", "smooth": "off"});
+        let options =
+            json!({"levels": levels, "bootstrap": "0", "smooth": "off", "dynamics": "off"});
         json!({"request": "fit", "options": options})
     };
     ask(purpose(test, "validate"));

@@ -9,6 +9,7 @@ use crate::model::{CreepTerm, Model, Operators, Smooth, StageConstants};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use crate::series::lost::fill;
 use crate::series::noise::noise;
 use crate::series::range;
 use hysteron_core::MAX_CREEP;
@@ -103,7 +104,10 @@ pub(super) fn find_short_lag(
     if !recordings.iter().all(passes) {
         return Ok(ShortLag::None);
     }
-    let mut search = Search::new(recordings, options, open, progress)?;
+    // A wrong reading of the input moves the model at once and the output not at all: as if it came
+    // late.
+    let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
+    let mut search = Search::new(&right, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
     let bare = search.fitted(&After::default())?;
     let hints = [search.step, UNASKED * search.step].map(|lag| search.creep(0, lag));
@@ -230,6 +234,16 @@ pub(crate) fn check_time(recordings: &[Recording]) -> Result<()> {
         true => Ok(()),
         false => Err(no_time()),
     }
+}
+
+/// The recording with lines in place of wrong readings of its input.
+fn with_right_input(recording: &Recording) -> Recording {
+    let [wrong, _] = recording.wrong_readings();
+    let mut mended = recording.clone();
+    for run in wrong.chunk_by(|a, b| a + 1 == *b) {
+        fill(&mut mended.input, &(run[0]..run[0] + run.len()));
+    }
+    mended
 }
 
 /// The white noise of the outputs, in percent of their range.
