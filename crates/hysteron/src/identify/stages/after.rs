@@ -236,10 +236,16 @@ pub(crate) fn check_time(recordings: &[Recording]) -> Result<()> {
     }
 }
 
+/// More than this share of the inputs are set points that stand alone, and no wrong readings.
+const MOST_WRONG: f64 = 0.02;
+
 /// The recording with lines in place of wrong readings of its input.
 fn with_right_input(recording: &Recording) -> Recording {
     let [wrong, _] = recording.wrong_readings();
     let mut mended = recording.clone();
+    if wrong.len() as f64 > MOST_WRONG * recording.len() as f64 {
+        return mended;
+    }
     for run in wrong.chunk_by(|a, b| a + 1 == *b) {
         fill(&mut mended.input, &(run[0]..run[0] + run.len()));
     }
