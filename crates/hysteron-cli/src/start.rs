@@ -171,15 +171,18 @@ fn to_text(summary: &RecordingSummary, model: &Model) -> Result<String> {
         let constants = stage.constants.iter().map(|constant| {
             let numbers = constant.numbers.iter().map(|number| text::number(*number));
             let unit = constant.unit.as_deref().unwrap_or_default();
-            format!(
-                "{} {} {unit}",
-                constant.name,
-                numbers.collect::<Vec<_>>().join(" ")
-            )
+            let numbers = numbers.collect::<Vec<_>>().join(" ");
+            match constant.name == stage.name {
+                true => format!("{numbers} {unit}"),
+                false => format!("{} {numbers} {unit}", constant.name),
+            }
         });
         let constants = constants.collect::<Vec<_>>().join(", ");
         format!("{}: {}", stage.name, constants.trim_end())
     }));
+    if !model.delay().is_none() {
+        lines.push(format!("dead time: {} samples", model.delay().samples()));
+    }
     Ok(lines.join("\n"))
 }
 
