@@ -9,9 +9,6 @@ use hysteron::{
 };
 use serde_json::json;
 
-/// So many numbers of a constant are listed.
-const FEW: usize = 6;
-
 pub(crate) fn run(args: &args::Inspect) -> Result<()> {
     if args
         .file
@@ -222,22 +219,12 @@ fn apart((least, most): (f64, f64)) -> String {
     }
 }
 
-/// A stage with its constants. Of many numbers their range is told.
+/// A stage with its constants.
 fn stage(stage: &StageSummary) -> String {
-    let rows = stage.constants.iter().map(|constant| {
-        let count = constant.numbers.len();
-        let numbers = if count <= FEW {
-            let each = constant.numbers.iter().copied().map(text::number);
-            each.collect::<Vec<_>>().join(", ")
-        } else {
-            let (low, high) = hysteron::range(&constant.numbers);
-            let (low, high) = (text::number(low), text::number(high));
-            format!("{count} numbers, {low} to {high}")
-        };
-        let unit = constant.unit.as_deref().unwrap_or_default();
-        let numbers = format!("{numbers} {unit}").trim_end().to_owned();
-        vec![format!("  {}", constant.name), numbers]
-    });
+    let rows = stage
+        .constants
+        .iter()
+        .map(|constant| vec![format!("  {}", constant.name), text::constant(constant)]);
     let rows: Vec<_> = rows.collect();
     format!("{}: {}\n{}", stage.name, stage.about, text::table(&rows))
 }

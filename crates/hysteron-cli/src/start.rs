@@ -169,16 +169,14 @@ fn to_text(summary: &RecordingSummary, model: &Model) -> Result<String> {
     let stages = stages.filter(|stage| stage.name != "spacing");
     lines.extend(stages.map(|stage| {
         let constants = stage.constants.iter().map(|constant| {
-            let numbers = constant.numbers.iter().map(|number| text::number(*number));
-            let unit = constant.unit.as_deref().unwrap_or_default();
-            let numbers = numbers.collect::<Vec<_>>().join(" ");
+            let numbers = text::constant(constant);
             match constant.name == stage.name {
-                true => format!("{numbers} {unit}"),
-                false => format!("{} {numbers} {unit}", constant.name),
+                true => numbers,
+                false => format!("{} {numbers}", constant.name),
             }
         });
         let constants = constants.collect::<Vec<_>>().join(", ");
-        format!("{}: {}", stage.name, constants.trim_end())
+        format!("{}: {}", stage.name, constants)
     }));
     if !model.delay().is_none() {
         lines.push(format!("dead time: {} samples", model.delay().samples()));

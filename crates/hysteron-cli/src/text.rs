@@ -1,7 +1,9 @@
 //! Numbers and tables as text.
 
 use crate::remedy;
-use hysteron::{Confidence, Errors, Excitation, FitSummary, Model, Quantity, Verdict};
+use hysteron::{
+    Confidence, ConstantSummary, Errors, Excitation, FitSummary, Model, Quantity, Verdict,
+};
 
 /// A number with four significant digits.
 pub(crate) fn number(value: f64) -> String {
@@ -88,4 +90,21 @@ pub(crate) fn sessions(confidence: &Confidence) -> String {
         0 | 1 => format!("{name}: another may differ by more; --repeat FILE widens it"),
         _ => name,
     }
+}
+
+/// So many numbers of a constant are listed.
+const FEW: usize = 6;
+
+/// The numbers of a constant of a stage, with its unit. Of many their range is told.
+pub(crate) fn constant(constant: &ConstantSummary) -> String {
+    let count = constant.numbers.len();
+    let numbers = if count <= FEW {
+        let each = constant.numbers.iter().copied().map(number);
+        each.collect::<Vec<_>>().join(", ")
+    } else {
+        let (low, high) = hysteron::range(&constant.numbers);
+        format!("{count} numbers, {} to {}", number(low), number(high))
+    };
+    let unit = constant.unit.as_deref().unwrap_or_default();
+    format!("{numbers} {unit}").trim_end().to_owned()
 }

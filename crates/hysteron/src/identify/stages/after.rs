@@ -11,7 +11,7 @@ use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::lost::fill;
 use crate::series::noise::noise;
-use crate::series::range;
+use crate::series::{range, range_of_all};
 use hysteron_core::MAX_CREEP;
 use serde::Serialize;
 
@@ -109,20 +109,19 @@ pub(super) fn find_short_lag(
     let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
     let mut search = Search::new(&right, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
-    let bare = search.fitted(&After::default())?;
+    let bare = search.creep(0, 0.0)?;
     let hints = [search.step, UNASKED * search.step].map(|lag| search.creep(0, lag));
     let [short, long] = hints;
-    if short?.1.min(long?.1) > (1.0 - HINT) * bare {
+    if short?.1.min(long?.1) > (1.0 - HINT) * bare.1 {
         return Ok(ShortLag::None);
     }
     let longest = (UNASKED * search.step).min(SLOWEST * search.longest);
-    let Some(lag) = search.lag_alone(longest)? else {
+    let Some(mut best) = search.lag_alone(longest)? else {
         return Ok(ShortLag::None);
     };
-    let mut best = search.creep(0, lag)?;
     search.refine_lag(&mut best)?;
     let longer = best.0.lag() > longest;
-    let (without, with) = (search.judged(After::default())?, search.judged(best.0)?);
+    let (without, with) = (search.judged(bare)?, search.judged(best)?);
     let report = Report {
         without: without.left_out,
         with: with.left_out,
@@ -163,8 +162,8 @@ pub(super) fn find(
     };
     // The simpler first. What was asked for is taken with its best constants.
     let mut best: Option<Candidate> = None;
-    for after in search.candidates(&counts, options.lag)? {
-        let next = search.judged(after)?;
+    for found in search.candidates(&counts, options.lag)? {
+        let next = search.judged(found)?;
         if best
             .as_ref()
             .is_none_or(|best| next.is_worth(best, search.noise))
@@ -254,11 +253,10 @@ fn with_right_input(recording: &Recording) -> Recording {
 
 /// The white noise of the outputs, in percent of their range.
 fn noise_percent(recordings: &[Recording]) -> f64 {
-    let ends = recordings.iter().map(|recording| range(&recording.output));
-    let whole = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (low, high) = range_of_all(recordings.iter().map(|recording| &recording.output));
     let worst = recordings.iter().map(|recording| noise(&recording.output));
     let worst = worst.fold(0.0, f64::max);
-    whole.map_or(0.0, |(low, high)| 100.0 * worst / (high - low))
+    100.0 * worst / (high - low)
 }
 
 struct Search<'a> {
@@ -322,10 +320,11 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn judged(&self, after: After) -> Result<Candidate> {
+    /// Constants whose error on what is fitted is known.
+    fn judged(&self, (after, fitted): (After, f64)) -> Result<Candidate> {
         Ok(Candidate {
             left_out: self.left_out(&after)?,
-            fitted: self.fitted(&after)?,
+            fitted,
             after,
         })
     }
@@ -333,11 +332,12 @@ impl<'a> Search<'a> {
     /// For each number of terms of creep the best constants, with no lag and with one if it is left
     /// to the data. A few numbers cannot follow noise, so they are those with the least error on what
     /// is fitted; whether they are taken is another question.
-    fn candidates(&self, counts: &[usize], lag: Choice<f64>) -> Result<Vec<After>> {
+    fn candidates(&self, counts: &[usize], lag: Choice<f64>) -> Result<Vec<(After, f64)>> {
         let lags = match lag {
             Choice::Fixed(lag) => vec![lag],
             Choice::Auto => {
                 let alone = self.lag_alone(SLOWEST * self.longest)?;
+                let alone = alone.map(|(after, _)| after.lag());
                 [0.0].into_iter().chain(alone).collect()
             }
         };
@@ -348,23 +348,23 @@ impl<'a> Search<'a> {
                 if lag == Choice::Auto && *given > 0.0 {
                     self.refine_lag(&mut best)?;
                 }
-                found.push(best.0);
+                found.push(best);
             }
         }
         Ok(found)
     }
 
     /// The lag up to the `longest` that is best without creep; `None` in too short a recording.
-    fn lag_alone(&self, longest: f64) -> Result<Option<f64>> {
+    fn lag_alone(&self, longest: f64) -> Result<Option<(After, f64)>> {
         let lags = std::iter::successors(Some(SHORTEST * self.step), |lag| Some(2.0 * lag));
-        let mut best: Option<(f64, f64)> = None;
+        let mut best: Option<(After, f64)> = None;
         for lag in lags.take_while(|lag| *lag <= longest) {
-            let error = self.creep(0, lag)?.1;
-            if best.is_none_or(|(_, least)| error < least) {
-                best = Some((lag, error));
+            let next = self.creep(0, lag)?;
+            if best.as_ref().is_none_or(|best| next.1 < best.1) {
+                best = Some(next);
             }
         }
-        Ok(best.map(|(lag, _)| lag))
+        Ok(best)
     }
 
     /// The best creep of `count` terms with this lag, and its error on what is fitted.
