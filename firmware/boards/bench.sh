@@ -66,13 +66,20 @@ tracking() { # CHIP COMPUTER SERIAL BOARD [MOST]
     [ -z "$3" ] || holds "$3 <= 1.2 * $2" || fail "$1: the serial line makes it worse"
 }
 
-# When the drive of a trace was above zero last.
+# When the drive of a trace was above zero last, and for how long it was by then.
 ends() { awk -F, '$4 > 0 { last = $1 } END { printf "%.2f", last }' "$1"; }
+lasts() { awk -F, '$4 > 0 { if (!on) first = $1; on = 1; last = $1 } END { printf "%.2f", last - first }' "$1"; }
 
-# A row in the table of faults: until when the drive was on, and what `run` said at last.
-row() { # CHIP WORDS NAME LATEST
-    printf '| %s | %s | %s | %s |\n' "$1" "$2" "$(ends "$3.trace")" "$(tail -n 1 "$3.log" | sed 's/^hysteron: //')"
-    holds "$(ends "$3.trace") <= $4" || fail "$1, $2: the drive stays on"
+# A row in the table of faults: until when the drive was on, and what `run` said at last. With `for`
+# as the last word, for how long it was on: when it begins depends on how busy this machine is.
+row() { # CHIP WORDS NAME LATEST [for]
+    local on said
+    case ${5:-until} in
+        until) on=$(ends "$3.trace") said=$on ;;
+        for) on=$(lasts "$3.trace") said="for $on" ;;
+    esac
+    printf '| %s | %s | %s | %s |\n' "$1" "$2" "$said" "$(tail -n 1 "$3.log" | sed 's/^hysteron: //')"
+    holds "$on <= $4" || fail "$1, $2: the drive stays on"
 }
 
 # Full drive from the start: a profile of a record.
