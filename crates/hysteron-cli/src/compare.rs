@@ -1,9 +1,10 @@
 //! `hysteron compare`
 
+use crate::columns::{Given, Named};
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
-use crate::{args, recording, remedy, text};
-use hysteron::{Columns, Forward, Model, Recording, Verdict, one_after_the_other};
+use crate::{args, prepare, recording, remedy, text};
+use hysteron::{Forward, Model, Recording, Verdict, one_after_the_other};
 use hysteron_files::AtomicFolder;
 use hysteron_report::{NamedForward, Report, Shown};
 use serde_json::json;
@@ -47,15 +48,12 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
         load = column;
         models.push(model);
     }
-    let columns = Columns {
-        input: &args.input,
-        output: &args.output,
-        time: args.time.as_deref(),
-        load: load.as_deref(),
-    };
+    let given = Given::of(&args.columns, load.as_deref());
     let mut compared = Vec::new();
     for data in data {
-        let recordings = recording::segments(data, columns, &args.repair)?;
+        let named = Named::of(data, &given, &args.repair)?;
+        let recordings = recording::segments(data, named.columns(), &args.repair)?;
+        let recordings = prepare::each_asked_for(recordings, &args.prepare)?;
         let (mut runs, mut verdicts) = (Vec::new(), Vec::new());
         for (file, model) in files.iter().zip(&models) {
             let run = hysteron::forward(model, &recordings, args.start.into());

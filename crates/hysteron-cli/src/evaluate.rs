@@ -152,6 +152,12 @@ fn to_text(evaluation: &Evaluation, recordings: &[Recording]) -> String {
             "{clipped} of {samples} inputs are outside the plane: the model was not made for this \
              recording, and the errors say little\n{result}"
         ),
-        clipped => result + &format!("\n{clipped} inputs outside the plane"),
+        clipped => {
+            result
+                + &format!(
+                    "\n{} outside the plane",
+                    hysteron::counted(clipped, "input")
+                )
+        }
     }
 }

@@ -187,8 +187,9 @@ fn model(args: &args::Inspect) -> Result<()> {
     if let Some(seconds) = summary.delay_s {
         let samples = model.delay().samples();
         lines.push(format!(
-            "dead time {} s ({samples} samples of the recording)",
-            text::number(seconds)
+            "dead time {} s ({} of the recording)",
+            text::number(seconds),
+            hysteron::counted(samples, "sample")
         ));
     }
     if let Some(load) = &summary.load {

@@ -122,9 +122,12 @@ pub(crate) fn after_fit<'a>(
     model: &Model,
     rates: impl ExactSizeIterator<Item = Option<&'a RateDependence>>,
 ) {
+    if model.is_timed() || !model.delay().is_none() {
+        return;
+    }
     let count = rates.len();
     for (n, rate) in rates.enumerate() {
-        let missed = rate.filter(|rate| rate.is_material() && !model.is_timed());
+        let missed = rate.filter(|rate| rate.is_material());
         if let Some(rate) = missed {
             let which = crate::recording::which(n, count);
             say(format_args!("{which}{}", rate_line(rate)));

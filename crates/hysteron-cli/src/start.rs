@@ -179,7 +179,11 @@ fn to_text(summary: &RecordingSummary, model: &Model) -> Result<String> {
         format!("{}: {}", stage.name, constants)
     }));
     if !model.delay().is_none() {
-        lines.push(format!("dead time: {} samples", model.delay().samples()));
+        let samples = model.delay().samples();
+        lines.push(format!(
+            "dead time: {}",
+            hysteron::counted(samples, "sample")
+        ));
     }
     Ok(lines.join("\n"))
 }

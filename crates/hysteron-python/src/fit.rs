@@ -69,7 +69,7 @@ use pyo3::types::{PyDict, PySequence, PyString};
 ///     Where the levels are. 'auto': close together where the output moves, if that is better.
 /// delay : int, 'auto' or 'off'
 ///     Dead time: samples from an input to the output that answers it, up to 1000. 'auto' looks for
-///     up to 7 and takes them only where they predict parts of the recording that were left out
+///     up to 60 and takes them only where they predict parts of the recording that were left out
 ///     clearly better; none without `time` at equal distances, with a load, and where `creep` or
 ///     `lag` is asked for. See `Model.delay_s`.
 /// creep : int, 'auto' or 'off'

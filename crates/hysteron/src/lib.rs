@@ -104,7 +104,7 @@ pub use progress::Progress;
 pub use recording::{
     HoldOut, Origin, Quantity, Recording, Rows, Source, Split, one_after_the_other,
 };
-pub use remedy::{Remedy, Setting, SettingValue};
+pub use remedy::{Remedy, Setting, SettingValue, counted};
 pub use rivals::{Rival, RivalKind};
 pub use series::noise::noise;
 pub use series::{

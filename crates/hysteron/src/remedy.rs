@@ -63,8 +63,14 @@ impl Remedy {
     }
 }
 
-/// A number of things, of which there may be one: "1 reading", "2 readings".
-pub(crate) fn counted(count: usize, one: &str) -> String {
+/// A number of things, of which there may be one.
+///
+/// ```
+/// assert_eq!(hysteron::counted(1, "reading"), "1 reading");
+/// assert_eq!(hysteron::counted(2, "reading"), "2 readings");
+/// ```
+#[must_use]
+pub fn counted(count: usize, one: &str) -> String {
     match count {
         1 => format!("1 {one}"),
         _ => format!("{count} {one}s"),

@@ -115,7 +115,7 @@ pub(crate) struct Stages {
     /// give the square of a current or a voltage. Needs --time
     #[arg(long, value_enum, value_name = "BODY")]
     pub(crate) thermal: Option<Thermal>,
-    /// Dead time: samples from an input to the output that answers it, up to 1000; `auto` (up to 7,
+    /// Dead time: samples from an input to the output that answers it, up to 1000; `auto` (up to 60,
     /// where they predict parts of the recording left out) or `off`. Needs --time
     #[arg(long, value_name = "N", default_value = "auto", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) delay: Step,
@@ -128,8 +128,8 @@ pub(crate) struct Stages {
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
     /// What happens behind the operators in time: a ring, which is a resonance of the second order,
-    /// or a lag, which is of the first. `auto` looks for a ring, and for a lag of up to four samples,
-    /// in recordings with time and without a load, unless creep or a lag is asked for
+    /// or a lag, which is of the first. `auto` looks for a ring, and for a lag, in recordings with
+    /// time and without a load, unless creep or a lag is asked for
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) dynamics: Dynamics,
     /// Output curve behind the operators: `auto` (where it predicts parts of the recordings left

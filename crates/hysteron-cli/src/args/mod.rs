@@ -259,16 +259,8 @@ pub(crate) struct Compare {
     /// Models (*.json) and recordings, in any order
     #[arg(required = true, num_args = 2.., value_name = "MODEL|DATA")]
     pub(crate) files: Vec<PathBuf>,
-    /// Column of the input
-    #[arg(long, value_name = "COL")]
-    pub(crate) input: String,
-    /// Column of the output
-    #[arg(long, value_name = "COL")]
-    pub(crate) output: String,
-    /// Column of time, in seconds or with its unit in its name, for the report's figures and for
-    /// models that need it
-    #[arg(long, value_name = "COL")]
-    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) columns: Columns,
     /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: Start,
@@ -284,6 +276,8 @@ pub(crate) struct Compare {
     pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
+    #[command(flatten)]
+    pub(crate) prepare: PrepareFirst,
 }
 
 #[derive(Args)]

@@ -108,7 +108,10 @@ fn outliers_line(fit: &FitSummary, model: &Model, recordings: &[Recording]) -> O
     let named = named.collect::<Vec<_>>().join("; ");
     let more = if count > NAMED { "; …" } else { "" };
     (count > 0).then(|| {
-        format!("{count} outliers, left out of the fit and of these errors: {named}{more}")
+        format!(
+            "{}, left out of the fit and of these errors: {named}{more}",
+            hysteron::counted(count, "outlier")
+        )
     })
 }
 
@@ -181,7 +184,12 @@ fn loads_left_out(model: &Model, unit: &str) -> Option<String> {
 fn delay_line(model: &Model) -> Option<String> {
     let delay = model.delay();
     let (samples, seconds) = (delay.samples(), text::number(delay.seconds()));
-    (!delay.is_none()).then(|| format!("dead time of {samples} samples, {seconds} s"))
+    (!delay.is_none()).then(|| {
+        format!(
+            "dead time of {}, {seconds} s",
+            hysteron::counted(samples, "sample")
+        )
+    })
 }
 
 /// The output curve; said where it was asked for.

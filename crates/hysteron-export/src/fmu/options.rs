@@ -23,7 +23,7 @@ pub struct FmuOptions {
     pub inverse: bool,
     /// The standard that it follows.
     pub fmi: Fmi,
-    /// The block's name, a C identifier of up to 63 letters; `sf_MKP`, `sf_Inverse_MKP` or
+    /// The block's name, a C identifier of up to 60 letters; `sf_MKP`, `sf_Inverse_MKP` or
     /// `sf_Controller_MKP` without one.
     pub name: Option<String>,
 }

@@ -8,7 +8,7 @@ use crate::recording::{Quantity, Recording};
 use crate::remedy::{Remedy, Setting, counted};
 use crate::rivals::wins;
 use crate::series::noise::noise;
-use crate::series::{branch_spans, usual_tolerance};
+use crate::series::{branch_spans, range, usual_tolerance};
 use std::fmt;
 
 /// A warning about a fit. [`Advice::remedy`] suggests what may help.
@@ -67,8 +67,6 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
-    /// A lag that is longer than what is taken unasked would predict what was left out.
-    LongLag,
     /// Neither a ring nor a lag was looked for, because more than the end of a recording was held out.
     NoDynamics,
     /// The first input does not determine the state of some operators, and all of these were taken
@@ -109,8 +107,8 @@ impl fmt::Display for Advice {
             ),
             Self::FalseReversals { all, real, noise } => write!(
                 f,
-                "the input reverses {all} times, but only {real} reversals are larger than its \
-                 noise of {noise:.3}: the others bend the model"
+                "the input reverses {all} times, but only {real} times by more than its noise of \
+                 {noise:.3}: the others bend the model"
             ),
             Self::Spikes {
                 series,
@@ -137,10 +135,6 @@ impl fmt::Display for Advice {
                      of the fit is"
                 )
             }
-            Self::LongLag => f.write_str(
-                "the output comes late: a lag of more than four samples would predict what was left \
-                 out better, and its inverse multiplies noise by more than 4.5",
-            ),
             Self::NoDynamics => f.write_str(
                 "neither a ring nor a lag was looked for: they need every sample before a row, and \
                  more than the end was held out",
@@ -191,7 +185,6 @@ impl Advice {
                 "record more branches, and test the model on another recording",
                 [],
             ),
-            Self::LongLag => Remedy::new("take it with {}", [Setting::word("lag", "auto")]),
             Self::NoDynamics => Remedy::new(
                 "hold out rows at the end or another recording with {}, or turn the search off with {}",
                 [Setting::any("hold-out"), Setting::word("dynamics", "off")],
@@ -226,7 +219,8 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         samples += seen.len();
         // A load that changes moves the output by itself, and so does what comes late: the test says
         // nothing then. Nor does a wrong reading.
-        if model.load.is_none() && !model.without_body().is_timed() {
+        let comes_late = model.without_body().is_timed() || !model.delay().is_none();
+        if model.load.is_none() && !comes_late {
             let wrong = recording.wrong_readings();
             let is_right = |n: usize| wrong.iter().all(|found| found.binary_search(&n).is_err());
             if let Some(right) = seen.only(is_right) {
@@ -281,13 +275,6 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
                 rank: fit.confidence.as_ref().map(|found| found.rank),
             });
         }
-        if fit
-            .other
-            .get("lag")
-            .is_some_and(|found| found["longer"] == true)
-        {
-            advice.push(Advice::LongLag);
-        }
         let operators = fit.open_at_start;
         if fit.start == Start::Off && operators as f64 > MANY_OPEN * plane.operators() as f64 {
             advice.push(Advice::OpenStart { operators });
@@ -321,6 +308,8 @@ fn spikes(recording: &Recording, number: usize, outliers: &[Outlier]) -> Vec<Adv
 /// So many times more reversals than real ones are noise, from this number of them on.
 const FALSE: usize = 4;
 const SOME: usize = 50;
+/// What jumps by more than this share of its range from sample to sample is no noise of a sensor.
+const MOST_NOISE: f64 = 0.1;
 
 fn false_reversals(recording: &Recording) -> Option<Advice> {
     let input = &recording.input;
@@ -329,6 +318,10 @@ fn false_reversals(recording: &Recording) -> Option<Advice> {
         return None;
     }
     let noise = noise(input);
+    let (low, high) = range(input);
+    if noise > MOST_NOISE * (high - low) {
+        return None;
+    }
     // Gaussian noise hardly ever reverses by more than six deviations.
     let tolerance = usual_tolerance(input).max(6.0 * noise);
     let real = branch_spans(input, tolerance).count();

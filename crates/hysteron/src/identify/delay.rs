@@ -13,8 +13,11 @@ use crate::progress::Progress;
 use crate::recording::{Recording, gaps};
 use crate::series::{Turning, mean_and_deviation, usual_tolerance};
 
-/// Shifts tried, in samples.
+/// Shifts tried, in samples, up to this one.
 const LONGEST: usize = 8;
+
+/// Where the longest is the best, these are tried until they are worse, and then those between.
+const FURTHER: [usize; 6] = [12, 16, 24, 32, 48, 64];
 
 /// A shift has to reduce the error on blocks left out by this share, as a ring and creep have to.
 const WORTH: f64 = 0.1;
@@ -79,9 +82,10 @@ pub(super) fn find(
     let Some(interval) = interval(recordings) else {
         return Ok(Delay::NONE);
     };
-    let enough = |recording: &Recording| recording.len() > 2 * BLOCKS * LONGEST;
+    let shortest = recordings.iter().map(Recording::len).min().unwrap_or(0);
+    let is_enough = |shift: usize| shortest > 2 * BLOCKS * shift;
     let loaded = recordings.iter().any(|recording| recording.load.is_some());
-    if loaded || !recordings.iter().all(enough) {
+    if loaded || !is_enough(LONGEST) {
         return Ok(Delay::NONE);
     }
     let beginning = |recording: &Recording| recording.part(0..recording.len().min(LOOKED_AT));
@@ -92,31 +96,64 @@ pub(super) fn find(
         bootstrap: 0,
         ..options.clone()
     };
-    let squares = |samples, options| {
+    let mut from = LONGEST;
+    let squares = |samples, options: &FitOptions, from| {
+        progress.tell("delay", f64::NAN)?;
         let shifted = Delay::new(samples, interval)?.of_recordings(&looked_at);
-        squares_left_out(&shifted, options, progress)
+        squares_left_out(&shifted, options, from, progress)
     };
-    let (mut errors, mut sign) = ([0.0; LONGEST + 1], Sign::Positive);
     let coarse = with_levels(LEVELS);
-    for (samples, error) in errors.iter_mut().enumerate() {
-        progress.tell("delay", samples as f64 / LONGEST as f64)?;
-        (*error, sign) = squares(samples, &coarse)?;
+    let error = |samples, from| Ok::<_, Error>((samples, squares(samples, &coarse, from)?.0));
+    let tried = (0..=LONGEST).map(|samples| error(samples, from));
+    let mut tried = tried.collect::<Result<Vec<_>>>()?;
+    if best_of(&tried) == LONGEST && is_enough(FURTHER[FURTHER.len() - 1]) {
+        from = FURTHER[FURTHER.len() - 1];
+        tried = further(|samples| error(samples, from))?;
     }
     let less = |with: f64, without: f64| with < (1.0 - WORTH).powi(2) * without;
-    let best = (0..LONGEST).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
-    let worth = |&samples: &usize| {
-        let longer = errors[samples] < errors[LONGEST];
-        longer && less(errors[samples], errors[0]) && goes_on(&looked_at, sign, samples)
-    };
-    let Some(best) = best.filter(worth) else {
+    let best = best_of(&tried);
+    let of = |shift: usize| tried.iter().find(|(samples, _)| *samples == shift);
+    let [at_once, late] = [of(0), of(best)].map(|found| found.map_or(f64::INFINITY, |(_, e)| *e));
+    let is_longest = tried.iter().all(|(samples, _)| *samples <= best);
+    let sign = squares(best, &coarse, from)?.1;
+    if is_longest || !less(late, at_once) || !goes_on(&looked_at, sign, best) {
         return Ok(Delay::NONE);
-    };
+    }
     // What a finer grid resolves is a loop, not a dead time.
     let fine = with_levels(options.levels.max(LEVELS));
-    match less(squares(best, &fine)?.0, squares(0, &fine)?.0) {
+    match less(squares(best, &fine, from)?.0, squares(0, &fine, from)?.0) {
         true => Delay::new(best, interval),
         false => Ok(Delay::NONE),
     }
+}
+
+/// The shift with the least error.
+fn best_of(tried: &[(usize, f64)]) -> usize {
+    let best = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    best.map_or(0, |(samples, _)| *samples)
+}
+
+/// Tries longer shifts until they are worse, and then halves the distances beside the best. No shift
+/// is with them.
+fn further(error: impl Fn(usize) -> Result<(usize, f64)>) -> Result<Vec<(usize, f64)>> {
+    let mut tried = vec![error(0)?, error(LONGEST)?];
+    for samples in FURTHER {
+        tried.push(error(samples)?);
+        if best_of(&tried) != samples {
+            break;
+        }
+    }
+    let longest = tried[tried.len() - 1].0;
+    let steps = std::iter::successors(Some(longest / 4), |step| Some(step / 2));
+    for step in steps.take_while(|step| *step > 0) {
+        let best = best_of(&tried);
+        for samples in [best - step.min(best), best + step] {
+            if samples < longest && tried.iter().all(|(known, _)| *known != samples) {
+                tried.push(error(samples)?);
+            }
+        }
+    }
+    Ok(tried)
 }
 
 /// Whether a model with a dead time predicts what was left out clearly better than the one without,
@@ -155,11 +192,12 @@ fn goes_on(recordings: &[Recording], sign: Sign, samples: usize) -> bool {
     ways.len() >= REVERSALS && mean > CHANCE * deviation / (ways.len() as f64).sqrt()
 }
 
-/// Sum of the squared errors over the blocks left out, and the sign of the output; without the
-/// beginning that no shift knows.
+/// Sum of the squared errors over the blocks left out, and the sign of the output. The samples before
+/// the one numbered `from` do not count: the longest shift does not know them.
 fn squares_left_out(
     recordings: &[Recording],
     options: &FitOptions,
+    from: usize,
     progress: Progress<'_>,
 ) -> Result<(f64, Sign)> {
     let mut problem = Problem::new(recordings, options)?;
@@ -177,7 +215,7 @@ fn squares_left_out(
         sign = fitted.sign;
         let modelled = problem.predict(&fitted.solution)?;
         for (sample, h) in modelled.into_iter().enumerate() {
-            if kept[sample] == 0.0 && places[sample].0 >= LONGEST {
+            if kept[sample] == 0.0 && places[sample].0 >= from {
                 squares += (problem.target(fitted.sign, sample) - h).powi(2);
             }
         }
@@ -192,12 +230,13 @@ mod tests {
     use crate::identify::{Fit, Spacing};
     use hysteron_core::{Operator, Plane};
 
-    /// Swings of another size each time, and what a model answers `late` samples later.
+    /// Swings of another size each time, and what a model answers `late` samples later. A slow swing
+    /// does not tell a short dead time, and a quick one has turned again after a long one.
     fn recorded(late: usize, noise: f64) -> Recording {
         let plane = Plane::new(0.0, 100.0, 15).unwrap();
         let model = Model::new(Operator::Mkp, plane, vec![1.0; 120], 3.0, Sign::Negative).unwrap();
         let swing = |n: usize| {
-            let phase = 0.1 * n as f64;
+            let phase = if late < LONGEST { 0.1 } else { 0.04 } * n as f64;
             50.0 - (50.0 - 0.012 * n as f64) * phase.cos()
         };
         let input: Vec<f64> = (0..3000).map(swing).collect();
@@ -217,7 +256,8 @@ mod tests {
 
     #[test]
     fn a_known_delay_is_found_with_and_without_noise() {
-        for (late, noise) in (0..LONGEST).flat_map(|late| [(late, 0.0), (late, 0.3)]) {
+        let lates = (0..LONGEST).chain([9, 13, 22, 41]);
+        for (late, noise) in lates.flat_map(|late| [(late, 0.0), (late, 0.3)]) {
             let recording = [recorded(late, noise)];
             let found = find(&recording, &FitOptions::plain(), Progress::NONE).unwrap();
             assert_eq!(found.samples(), late, "noise {noise}");
@@ -247,7 +287,7 @@ mod tests {
 
     #[test]
     fn what_is_later_than_tried_is_no_delay() {
-        let recording = [recorded(LONGEST + 4, 0.0)];
+        let recording = [recorded(FURTHER[FURTHER.len() - 1] + 4, 0.0)];
         let found = find(&recording, &FitOptions::plain(), Progress::NONE).unwrap();
         assert!(found.is_none(), "{found:?}");
     }

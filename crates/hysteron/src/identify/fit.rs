@@ -233,7 +233,7 @@ impl<'a> Fit<'a> {
 
     /// Dead time of the actuator, in samples of the recordings: so many samples an input takes
     /// until the output begins to answer it ([`Delay`](crate::Delay)). [`Auto`](crate::Auto) looks
-    /// for up to 7 and takes them only if they predict parts of the recordings that were left out
+    /// for up to 60 and takes them only if they predict parts of the recordings that were left out
     /// by a tenth better. It finds none in recordings without time at equal distances, with a load,
     /// and where creep or a lag is asked for, which would take their part.
     #[must_use]
@@ -277,9 +277,8 @@ impl<'a> Fit<'a> {
     }
 
     /// What is looked for behind the operators in recordings with time: by default a ring, a
-    /// resonance of the second order, where the recordings excite one, else a lag of up to four
-    /// samples. It is taken only if it predicts parts of them that were left out. Recordings with a
-    /// load get none.
+    /// resonance of the second order, where the recordings excite one, else a lag. It is taken only
+    /// if it predicts parts of them that were left out. Recordings with a load get none.
     #[must_use]
     pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
         self.options.dynamics = dynamics;
@@ -389,16 +388,9 @@ impl<'a> Fit<'a> {
         if delay.is_none() {
             return Ok((at_once, delay));
         }
-        let mut late = self.acting(&delay.of_recordings(recordings))?;
+        let late = self.acting(&delay.of_recordings(recordings))?;
         Ok(match delay::is_worth(&late, &at_once) {
-            true => {
-                // A dead time takes a part of a longer lag, which is still to be told.
-                let lag = at_once.fit.and_then(|mut fit| fit.other.remove("lag"));
-                if let (Some(lag), Some(fit)) = (lag, &mut late.fit) {
-                    fit.other.insert("lag".to_owned(), lag);
-                }
-                (late, delay)
-            }
+            true => (late, delay),
             false => (at_once, Delay::NONE),
         })
     }

@@ -109,7 +109,7 @@ pub const FIT_OPTIONS: [FitOption; 20] = [
         name: "delay",
         default: "`auto`",
         range: "`auto`, `off`, 1 to 1000",
-        purpose: "with time: samples from an input to the output that answers it; `auto`: up to 7, if \
+        purpose: "with time: samples from an input to the output that answers it; `auto`: up to 60, if \
                   that is better by 10 % on parts left out",
     },
     FitOption {
@@ -128,7 +128,7 @@ pub const FIT_OPTIONS: [FitOption; 20] = [
         name: "dynamics",
         default: "`auto`",
         range: "`auto`, `off`, `lag`, `ring`",
-        purpose: "with time: a resonance of the output, or a lag of up to four samples; `auto`: where \
+        purpose: "with time: a resonance of the output, or a lag; `auto`: where \
                   that is better by 10 %; `lag` is `lag auto`",
     },
     FitOption {

@@ -26,9 +26,8 @@ pub use split::{HoldOut, Split};
 pub(crate) use units::Measures;
 
 use crate::error::{Error, Place, Result};
-use crate::series::lost::wrong;
+use crate::series::lost::wrong_of_both;
 use crate::series::range;
-use crate::series::spikes::DEVIATIONS;
 use std::path::PathBuf;
 
 /// A physical quantity: its name and, if known, its unit.
@@ -231,8 +230,7 @@ impl Recording {
     /// The samples whose input stands out from its neighbours or was held, and those whose output
     /// does, ascending.
     pub(crate) fn wrong_readings(&self) -> [Vec<usize>; 2] {
-        let input = wrong(&self.input, Some(&self.output), DEVIATIONS, true);
-        [input, wrong(&self.output, None, DEVIATIONS, true)]
+        wrong_of_both(&self.input, &self.output)
     }
 
     /// Checks the samples. Every function of this crate that takes a recording makes this check.

@@ -2,6 +2,7 @@
 //! with the last reading, or with a fixed value.
 
 use crate::series::clear_branches;
+use crate::series::coarse::goes_by_jumps;
 use crate::series::jumps::remove_bursts;
 use crate::series::noise::median_of;
 use crate::series::spikes;
@@ -93,22 +94,42 @@ pub(crate) fn wrong(
     deviations: f64,
     runs: bool,
 ) -> Vec<usize> {
+    replaced(&mut values.to_vec(), follower, deviations, runs)
+}
+
+/// The wrong readings of an input and of its output. Between set points both jump, and a short one
+/// is as right as a long one: none is wrong then.
+pub(crate) fn wrong_of_both(input: &[f64], output: &[f64]) -> [Vec<usize>; 2] {
+    let mut right = input.to_vec();
+    let found = replaced(&mut right, Some(output), spikes::DEVIATIONS, true);
+    match goes_by_jumps(&right) {
+        true => [Vec::new(), Vec::new()],
+        false => [found, wrong(output, None, spikes::DEVIATIONS, true)],
+    }
+}
+
+/// As [`wrong`], with lines in place of these readings.
+fn replaced(
+    values: &mut Vec<f64>,
+    follower: Option<&[f64]>,
+    deviations: f64,
+    runs: bool,
+) -> Vec<usize> {
     let mut found: Vec<usize> = Vec::new();
-    let mut values = values.to_vec();
     if runs {
-        let longest = half_a_branch(&values);
-        let held = held(&values, follower).into_iter();
+        let longest = half_a_branch(values);
+        let held = held(values, follower).into_iter();
         for run in held.filter(|run| run.len() <= longest) {
-            fill(&mut values, &run);
+            fill(values, &run);
             found.extend(run);
         }
     }
     for _ in 0..if runs { ROUNDS } else { 1 } {
         let before = found.len();
         if runs {
-            found.extend(remove_bursts(&mut values));
+            found.extend(remove_bursts(values));
         }
-        found.extend(spikes::remove(&mut values, deviations));
+        found.extend(spikes::remove(values, deviations));
         if found.len() == before {
             break;
         }

@@ -6,6 +6,7 @@
 //! that are wrong, `frozen` a channel that stands still, and `repeated` rows that come twice. `spread` gives range, mean and standard
 //! deviation. `runs` keeps values that change seldom.
 
+pub(crate) mod coarse;
 mod errors;
 pub mod filter;
 pub(crate) mod frozen;

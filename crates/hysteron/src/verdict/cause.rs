@@ -49,6 +49,11 @@ pub enum Cause {
         /// Their number.
         branches: usize,
     },
+    /// The input stands at few points, so that many weights come from the prior.
+    FewPoints {
+        /// Their number.
+        points: usize,
+    },
     /// Loads that were left out are predicted badly, so others may be as well.
     LoadsLeftOut {
         /// The error there, in percent of the range of the output at such a load.
@@ -80,6 +85,9 @@ const SEEN: f64 = 0.01;
 /// error and band do not hold for another recording (docs/measured/coverage.md).
 const FEW: usize = 8;
 
+/// Fewer points for each combination of weights that the data determine leave none to test it with.
+const POINTS: usize = 2;
+
 /// With so few, at most two loops were seen: no model of these is good for all paths.
 pub(super) const TWO_LOOPS: usize = 4;
 
@@ -105,6 +113,7 @@ impl Cause {
             Self::Rival { .. } => "rival",
             Self::Noise { .. } => "noise",
             Self::FewBranches { .. } => "few_branches",
+            Self::FewPoints { .. } => "few_points",
             Self::LoadsLeftOut { .. } => "loads_left_out",
             Self::Misfit { .. } => "misfit",
         }
@@ -119,7 +128,7 @@ impl Cause {
             Self::Rival { .. } => 0.9,
             Self::Elsewhere { .. } => 0.85,
             Self::LoadsLeftOut { .. } => 0.82,
-            Self::FewBranches { .. } => 0.8,
+            Self::FewBranches { .. } | Self::FewPoints { .. } => 0.8,
             Self::Outside { share } if *share > SEEN => 0.3,
             Self::Noise { .. } => Self::NOISE,
             Self::Misfit { .. } => Self::MISFIT,
@@ -152,6 +161,28 @@ pub(super) fn few_loops(fit: &FitSummary, recordings: &[Recording]) -> Option<Ca
     };
     let here: usize = recordings.iter().map(of).sum();
     (branches.max(here) <= TWO_LOOPS).then_some(Cause::FewBranches { branches })
+}
+
+/// A model of recordings that stand at hardly more points than they determine numbers of it. What
+/// was left out stood at the same ones.
+pub(super) fn few_points(fit: &FitSummary, recordings: &[Recording]) -> Option<Cause> {
+    let rank = fit.confidence.as_ref()?.rank;
+    let points: usize = recordings.iter().map(|r| places(&r.input)).sum();
+    (points < POINTS * rank).then_some(Cause::FewPoints { points })
+}
+
+/// How often a series moves on by more than it trembles.
+fn places(values: &[f64]) -> usize {
+    let tolerance = usual_tolerance(values);
+    let mut last = f64::NAN;
+    let moves = values.iter().filter(|value| {
+        let moves = !((*value - last).abs() <= tolerance);
+        if moves {
+            last = **value;
+        }
+        moves
+    });
+    moves.count()
 }
 
 /// The inputs of an evaluation that the model does not know.

@@ -24,6 +24,7 @@ use crate::model::{Model, Outlier, Start};
 use crate::recording::{Quantity, Recording, no_recordings};
 use crate::rivals::{Rival, RivalKind, SMALL, wins};
 use crate::series::Errors;
+use crate::series::coarse::hides_noise;
 use crate::series::noise::noise;
 use grade::{GOOD, OF_NOISE, USABLE};
 use serde::Serialize;
@@ -243,8 +244,11 @@ impl Verdict {
             let parts = cause::of_parts(recordings, output, was_fitted);
             verdict.causes.extend(parts);
         }
-        if !was_fitted && let Some(fit) = &model.fit {
-            verdict.causes.extend(cause::few_loops(fit, recordings));
+        if let Some(fit) = &model.fit {
+            verdict.causes.extend(match was_fitted {
+                true => cause::few_points(fit, recordings),
+                false => cause::few_loops(fit, recordings),
+            });
         }
         if percent > GOOD {
             verdict.causes.extend(readings::cause(recordings, output));
@@ -287,7 +291,7 @@ impl Verdict {
             .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
         let guessed = self.causes.iter().any(|cause| match cause {
             Cause::FewBranches { branches } => *branches <= cause::TWO_LOOPS,
-            Cause::LoadsLeftOut { .. } => true,
+            Cause::FewPoints { .. } | Cause::LoadsLeftOut { .. } => true,
             _ => false,
         });
         self.grade = match (by_error, rival_wins) {
@@ -371,8 +375,9 @@ fn worst(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Op
     })
 }
 
-/// The white noise of the readings, as a root mean square over recordings. Where few samples are on
-/// a stroke, the signal looks like noise; what is left beside a model then tells more.
+/// The white noise of the readings, as a root mean square over recordings; of one whose input jumps
+/// nothing is known. Where few samples are on a stroke, the signal looks like noise; what is left
+/// beside a model then tells more.
 fn noise_of(recordings: &[Recording], modelled: &[f64]) -> f64 {
     let (mut samples, mut squares, mut first) = (0.0, 0.0, 0);
     for recording in recordings {
@@ -381,6 +386,9 @@ fn noise_of(recordings: &[Recording], modelled: &[f64]) -> f64 {
             let pairs = recording.output.iter().zip(modelled);
             let left: Vec<f64> = pairs.map(|(y, h)| y - h).collect();
             found = found.min(noise(&left));
+        }
+        if hides_noise(&recording.input) {
+            found = 0.0;
         }
         first += recording.len();
         samples += recording.len() as f64;

@@ -16,7 +16,7 @@ fn is_odd(gain: &ErrorPart) -> bool {
 const MORE: &str = "record more reversals inside the range (design makes such an input)";
 
 fn is_few(cause: &Cause) -> bool {
-    matches!(cause, Cause::FewBranches { .. })
+    matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. })
 }
 
 impl Grade {
@@ -131,6 +131,9 @@ impl Verdict {
                     count => format!("only {count} branches were recorded"),
                 };
                 format!("{branches}: what other paths do is a guess")
+            }
+            Cause::FewPoints { points } => {
+                format!("the input stands at {points} points only: what other paths do is a guess")
             }
             Cause::Misfit { misfit, noise } => format!(
                 "{} of it is what the model cannot follow; the noise of the readings is {}",
@@ -289,7 +292,7 @@ impl Verdict {
             _ => {
                 let words = |more| format!("{MORE}{more}");
                 let [load, time] = [Setting::any("load"), Setting::any("time")];
-                let [lag, thermal] = [Setting::word("lag", "auto"), Setting::on("thermal")];
+                let [creep, thermal] = [Setting::word("creep", "auto"), Setting::on("thermal")];
                 match (self.has_load, self.has_time) {
                     _ if self.has_time && !can_be_late => match self.has_load {
                         true => Remedy::new(MORE, []),
@@ -304,14 +307,15 @@ impl Verdict {
                     (false, true) => Remedy::new(
                         words(
                             ", let the fit look for what comes late ({}, or {} for a drive that \
-                             heats), or name what else moves the output: {}",
+                             heats) or undo a slow sensor of the input ({}), or name what else moves \
+                             the output: {}",
                         ),
-                        [lag, thermal, load],
+                        [creep, thermal, Setting::word("sensor-lag", "auto"), load],
                     ),
                     (true, false) => Remedy::new(words(", or name the time: {}"), [time]),
                     (true, true) => Remedy::new(
                         words(", or let the fit look for what comes late: {}"),
-                        [lag],
+                        [creep],
                     ),
                 }
             }

@@ -2,24 +2,26 @@
 //!
 //! `body` is the thermal body, `latent` the heat that it loses to the operators, `load` the shift by
 //! the load, `spacing` the place of the levels, `ring`, `after` and `curve` those behind the
-//! operators, from the last to the first. Each finds its constants and hands on recordings as the
+//! operators, from the last to the first, and `lag` a lag that nobody asked for. Each finds its constants and hands on recordings as the
 //! next stage sees them. `nelder_mead` is the search of body, heat and ring.
 
 mod after;
 mod body;
 mod curve;
+mod lag;
 mod latent;
 mod load;
 mod nelder_mead;
 mod resonator;
 mod ring;
+mod search;
 mod spacing;
+mod undone;
 
-use after::ShortLag;
-pub(crate) use after::check_time;
 use latent::Heated;
 pub use spacing::SpacingShape;
 pub(crate) use spacing::shape_of as spacing_shape;
+pub(crate) use undone::check_time;
 
 use crate::error::Result;
 use crate::identify::changed::few;
@@ -108,20 +110,13 @@ pub(crate) fn fit(
                 && asked.thermal == Thermal::None
                 && !loaded =>
         {
-            match after::find_short_lag(&seen, &options, asked.open, progress)? {
-                ShortLag::Found(after, report) => Some((after, report)),
-                ShortLag::Longer => {
-                    notes.insert("lag".to_owned(), json!({"longer": true}));
-                    None
-                }
-                ShortLag::None => None,
-            }
+            lag::find(&seen, &options, asked.open, progress)?
         }
         false => None,
     };
     if let Some((after, report)) = after {
         notes.insert("after".to_owned(), json!(report));
-        seen = Cow::Owned(after::before(&after, &seen)?);
+        seen = Cow::Owned(undone::before(&after, &seen)?);
         found.behind = after;
     }
     if let Some([frequency, damping]) = ring {

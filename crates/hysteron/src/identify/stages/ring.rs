@@ -37,6 +37,10 @@ const DAMPINGS: [f64; 3] = [0.03, 0.12, 0.5];
 const CYCLES: f64 = 10.0;
 const HIGHEST: f64 = 0.45;
 
+/// With fewer samples a cycle, a swing is not told apart from an output that comes early: unasked,
+/// it is not taken.
+const CLEAR: f64 = 4.0;
+
 /// From a damping of `1/√2` on there is no resonance. A lag says the same then.
 const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -134,7 +138,10 @@ pub(super) fn find(
     let (constants, targets, _) = search.swung(first, None, &still)?;
     let [frequency, damping] = constants;
     let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
-    if !asked && (damping >= RESONANT || decay > DECAYS * clock.longest) {
+    let is_unclear = damping >= RESONANT
+        || decay > DECAYS * clock.longest
+        || CLEAR * clock.step * frequency > 1.0;
+    if !asked && is_unclear {
         return Ok(None);
     }
     let mut recordings = recordings.to_vec();

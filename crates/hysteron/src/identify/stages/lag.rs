@@ -1,0 +1,66 @@
+//! Looks for a lag that nobody asked for.
+
+use super::after::Report;
+use super::search::Search;
+use super::undone::After;
+use crate::error::Result;
+use crate::identify::choose::Open;
+use crate::identify::options::FitOptions;
+use crate::progress::Progress;
+use crate::recording::Recording;
+use crate::series::lost::fill;
+
+/// A lag alone can be judged by shorter blocks than creep. The error of long ones is that of loops
+/// that the others do not have, and it hides a lag.
+const SHORT_BLOCKS: usize = 24;
+
+/// One of these lags, in sampling steps, has to reduce the error on what is fitted by this share, or
+/// none is looked for.
+const HINTS: [f64; 2] = [1.0, 4.0];
+const HINT: f64 = 0.05;
+
+/// Looks for a lag; `None` where it does not predict parts of the recordings that were left out, or
+/// samples come at the same time.
+pub(super) fn find(
+    recordings: &[Recording],
+    options: &FitOptions,
+    open: Open,
+    progress: Progress<'_>,
+) -> Result<Option<(After, Report)>> {
+    let passes = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
+    let passes = |recording: &Recording| recording.time.as_ref().is_some_and(passes);
+    if !recordings.iter().all(passes) {
+        return Ok(None);
+    }
+    // A wrong reading of the input moves the model at once and the output not at all: as if it came
+    // late.
+    let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
+    let mut search = Search::new(&right, options, open, progress)?;
+    search.blocks = SHORT_BLOCKS;
+    let bare = search.creep(0, 0.0)?;
+    let [short, long] = HINTS.map(|steps| search.creep(0, steps * search.step));
+    if short?.1.min(long?.1) > (1.0 - HINT) * bare.1 {
+        return Ok(None);
+    }
+    let Some(mut best) = search.lag_alone()? else {
+        return Ok(None);
+    };
+    search.refine_lag(&mut best)?;
+    let (without, with) = (search.judged(bare)?, search.judged(best)?);
+    let report = Report {
+        without: without.left_out,
+        with: with.left_out,
+    };
+    let is_worth = with.is_worth(&without, search.noise);
+    Ok(is_worth.then_some((with.after, report)))
+}
+
+/// The recording with lines in place of wrong readings of its input.
+fn with_right_input(recording: &Recording) -> Recording {
+    let [wrong, _] = recording.wrong_readings();
+    let mut mended = recording.clone();
+    for run in wrong.chunk_by(|a, b| a + 1 == *b) {
+        fill(&mut mended.input, &(run[0]..run[0] + run.len()));
+    }
+    mended
+}

@@ -1,0 +1,337 @@
+//! Searches constants of creep and lag: those with the least error on what is fitted, and their error
+//! on blocks of time that are left out.
+
+use super::undone::{After, before, forward, no_time};
+use crate::error::{Error, Result};
+use crate::identify::choose::Open;
+use crate::identify::options::{Choice, FitOptions};
+use crate::identify::weights::problem::Problem;
+use crate::model::{CreepTerm, Smooth};
+use crate::progress::Progress;
+use crate::recording::Recording;
+use crate::series::coarse::hides_noise;
+use crate::series::noise::noise;
+use crate::series::{range, range_of_all};
+
+/// Each recording is divided into this many blocks of time; those with an odd number are left out
+/// first, then the others.
+const BLOCKS: usize = 6;
+
+/// Creep and lag have to reduce the error on blocks left out by this share. Blocks of one recording
+/// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out lost
+/// 13 % on a recording at another frequency.
+const WORTH: f64 = 0.1;
+
+/// So much of the whole error has to go, whatever the noise is.
+const LEAST: f64 = 0.02;
+
+/// Coefficients of creep that are tried, for all terms together.
+const COEFFICIENTS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2];
+
+/// The shortest lag that is tried, in sampling steps. Each one after it is twice as long.
+const SHORTEST: f64 = 0.5;
+
+/// What is slower than this share of the longest recording is creep.
+const SLOWEST: f64 = 1.0 / 30.0;
+
+/// Time constants that are tried for a single term.
+const SINGLE: usize = 5;
+
+/// Levels on which the constants are found, if their number is left to the data, and the smoothness:
+/// a coarse or smooth plane takes its own width for a lag.
+const FINE: usize = 40;
+const SLIGHT: Smooth = Smooth {
+    along: 1e-9,
+    across: 1e-9,
+};
+
+/// Rounds in which coefficients and time constants are refined, each with a smaller step.
+const REFINED: i32 = 4;
+
+/// Smoothness of the weights in the search, so that operators that a block left out do not run away.
+const SMOOTH: Smooth = Smooth {
+    along: 0.0,
+    across: 1e-6,
+};
+
+/// Constants, and the errors with them. On a coarse plane a lag helps where there is none, so what
+/// is taken has to help on a fine one as well.
+pub(super) struct Candidate {
+    pub(super) after: After,
+    pub(super) left_out: f64,
+    fitted: f64,
+}
+
+impl Candidate {
+    /// Whether it is worth more constants than a simpler one has. No model follows the `noise`, so
+    /// the share is of the error beyond it, and a small one of the whole.
+    pub(super) fn is_worth(&self, simpler: &Self, noise: f64) -> bool {
+        let share = |less: f64| 1.0 - (1.0 - less) * (1.0 - less);
+        let better = |error: f64, other: f64| {
+            let gained = other * other - error * error;
+            let beyond = other * other - noise * noise;
+            gained > share(WORTH) * beyond && gained > share(LEAST) * other * other
+        };
+        better(self.left_out, simpler.left_out) && better(self.fitted, simpler.fitted)
+    }
+}
+
+/// The white noise of the outputs, in percent of their range, as far as it can be told.
+fn noise_percent(recordings: &[Recording]) -> f64 {
+    let (low, high) = range_of_all(recordings.iter().map(|recording| &recording.output));
+    let told = recordings
+        .iter()
+        .filter(|recording| !hides_noise(&recording.input));
+    let worst = told.map(|recording| noise(&recording.output));
+    let worst = worst.fold(0.0, f64::max);
+    100.0 * worst / (high - low)
+}
+
+pub(super) struct Search<'a> {
+    recordings: &'a [Recording],
+    /// For what is left out.
+    coarse: FitOptions,
+    /// For what is fitted.
+    fine: FitOptions,
+    progress: Progress<'a>,
+    /// Into how many blocks of time a recording is divided.
+    pub(super) blocks: usize,
+    /// Standard deviation of the white noise of the outputs, in percent of their range.
+    pub(super) noise: f64,
+    /// Sampling step, and the time that the longest recording takes.
+    pub(super) step: f64,
+    pub(super) longest: f64,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        recordings: &'a [Recording],
+        options: &FitOptions,
+        open: Open,
+        progress: Progress<'a>,
+    ) -> Result<Self> {
+        let (mut step, mut longest) = (f64::INFINITY, 0.0_f64);
+        for recording in recordings {
+            let (start, end) = range(recording.time.as_ref().ok_or_else(no_time)?);
+            step = step.min((end - start) / recording.len().max(2).saturating_sub(1) as f64);
+            longest = longest.max(end - start);
+        }
+        if step <= 0.0 {
+            let what = "time does not pass in a recording, so creep and lag cannot be identified";
+            return Err(Error::Thermal(what.into()));
+        }
+        let coarse = FitOptions {
+            bootstrap: 0,
+            smooth: options.smooth.at_least(SMOOTH),
+            ..options.clone()
+        };
+        let fine = FitOptions {
+            levels: match open.levels {
+                true => FINE.max(options.levels),
+                false => options.levels,
+            },
+            smooth: match open.smooth {
+                true => SLIGHT,
+                false => options.smooth,
+            },
+            ..coarse.clone()
+        };
+        Ok(Self {
+            recordings,
+            coarse,
+            fine,
+            progress,
+            blocks: BLOCKS,
+            noise: noise_percent(recordings),
+            step,
+            longest,
+        })
+    }
+
+    /// Constants whose error on what is fitted is known.
+    pub(super) fn judged(&self, (after, fitted): (After, f64)) -> Result<Candidate> {
+        Ok(Candidate {
+            left_out: self.left_out(&after)?,
+            fitted,
+            after,
+        })
+    }
+
+    /// For each number of terms of creep the best constants, with no lag and with one if it is left
+    /// to the data. A few numbers cannot follow noise, so they are those with the least error on what
+    /// is fitted; whether they are taken is another question.
+    pub(super) fn candidates(
+        &self,
+        counts: &[usize],
+        lag: Choice<f64>,
+    ) -> Result<Vec<(After, f64)>> {
+        let lags = match lag {
+            Choice::Fixed(lag) => vec![lag],
+            Choice::Auto => {
+                let alone = self.lag_alone()?;
+                let alone = alone.map(|(after, _)| after.lag());
+                [0.0].into_iter().chain(alone).collect()
+            }
+        };
+        let mut found = Vec::new();
+        for count in counts {
+            for given in &lags {
+                let mut best = self.creep(*count, *given)?;
+                if lag == Choice::Auto && *given > 0.0 {
+                    self.refine_lag(&mut best)?;
+                }
+                found.push(best);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The lag that is best without creep; `None` in too short a recording.
+    pub(super) fn lag_alone(&self) -> Result<Option<(After, f64)>> {
+        let lags = std::iter::successors(Some(SHORTEST * self.step), |lag| Some(2.0 * lag));
+        let longest = SLOWEST * self.longest;
+        let mut best: Option<(After, f64)> = None;
+        for lag in lags.take_while(|lag| *lag <= longest) {
+            let next = self.creep(0, lag)?;
+            if best.as_ref().is_none_or(|best| next.1 < best.1) {
+                best = Some(next);
+            }
+        }
+        Ok(best)
+    }
+
+    /// The best creep of `count` terms with this lag, and its error on what is fitted.
+    pub(super) fn creep(&self, count: usize, lag: f64) -> Result<(After, f64)> {
+        let rate = |terms: &[CreepTerm]| {
+            let after = After::after(terms, lag)?;
+            let error = self.fitted(&after)?;
+            Ok::<_, Error>((after, error))
+        };
+        if count == 0 {
+            return rate(&[]);
+        }
+        let mut best = rate(&self.terms(count, COEFFICIENTS[0]))?;
+        for coefficient in COEFFICIENTS {
+            let mut consider = |terms: &[CreepTerm]| {
+                let next = rate(terms)?;
+                if next.1 < best.1 {
+                    best = next;
+                }
+                Ok::<_, Error>(())
+            };
+            match count {
+                // The time constant of a single term is searched too.
+                1 => {
+                    for term in self.terms(SINGLE, coefficient * SINGLE as f64) {
+                        consider(&[term])?;
+                    }
+                }
+                _ => consider(&self.terms(count, coefficient))?,
+            }
+        }
+        self.refine_creep(&mut best)?;
+        Ok(best)
+    }
+
+    /// Scales the coefficients of creep, and its time constants, as far as that helps.
+    fn refine_creep(&self, best: &mut (After, f64)) -> Result<()> {
+        let scaled = |after: &After, coefficient: f64, tau: f64| {
+            let scale = |term: CreepTerm| CreepTerm {
+                coefficient: term.coefficient * coefficient,
+                tau: term.tau * tau,
+            };
+            let terms: Vec<_> = after.terms().into_iter().map(scale).collect();
+            After::after(&terms, after.lag())
+        };
+        self.refine(best, |after, factor| scaled(after, factor, 1.0))?;
+        self.refine(best, |after, factor| scaled(after, 1.0, factor))
+    }
+
+    pub(super) fn refine_lag(&self, best: &mut (After, f64)) -> Result<()> {
+        self.refine(best, |after, factor| {
+            After::after(&after.terms(), factor * after.lag())
+        })
+    }
+
+    /// Changes a stage by factors that come nearer to one, as long as the error on what is fitted
+    /// falls.
+    fn refine(
+        &self,
+        best: &mut (After, f64),
+        changed: impl Fn(&After, f64) -> Result<After>,
+    ) -> Result<()> {
+        for round in 1..=REFINED {
+            let step = 2_f64.powf(0.5_f64.powi(round));
+            for factor in [step, 1.0 / step] {
+                let after = changed(&best.0, factor)?;
+                let error = self.fitted(&after)?;
+                if error < best.1 {
+                    *best = (after, error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Terms with time constants spread evenly over the logarithm, from a thirtieth ([`SLOWEST`]) to a
+    /// third of the longest recording. Faster ones would not be creep, but stand for other dynamics.
+    fn terms(&self, count: usize, coefficient: f64) -> Vec<CreepTerm> {
+        let (from, to) = ((SLOWEST * self.longest).ln(), (self.longest / 3.0).ln());
+        let tau = |k: usize| (from + (to - from) * (k as f64 + 0.5) / count as f64).exp();
+        let term = |k| CreepTerm {
+            coefficient: coefficient / count as f64,
+            tau: tau(k),
+        };
+        (0..count).map(term).collect()
+    }
+
+    /// The error on blocks of time left out, in percent of the range.
+    pub(super) fn left_out(&self, after: &After) -> Result<f64> {
+        self.error(after, &self.coarse, &[Some(0), Some(1)])
+    }
+
+    /// The error on what is fitted, in percent of the range.
+    fn fitted(&self, after: &After) -> Result<f64> {
+        self.error(after, &self.fine, &[None])
+    }
+
+    /// The error with each of these parts left out in turn: every second block of time, or nothing.
+    /// What is left out is what counts; of nothing, all.
+    fn error(&self, after: &After, options: &FitOptions, parts: &[Option<usize>]) -> Result<f64> {
+        self.progress.tell("creep and lag", f64::NAN)?;
+        let seen = before(after, self.recordings)?;
+        let mut problem = Problem::new(&seen, options)?;
+        let block = |recording: &Recording, n: usize| n * self.blocks / recording.len();
+        let blocks: Vec<usize> = seen
+            .iter()
+            .flat_map(|recording| (0..recording.len()).map(|n| block(recording, n) % 2))
+            .collect();
+        let measured: Vec<f64> = self
+            .recordings
+            .iter()
+            .flat_map(|recording| recording.output.clone())
+            .collect();
+        let mut squares = 0.0;
+        for part in parts {
+            let kept: Vec<f64> = blocks
+                .iter()
+                .map(|b| f64::from(Some(*b) != *part))
+                .collect();
+            let fitted = problem.solve(Some(&kept), Progress::NONE)?;
+            let predicted = problem.predict(&fitted.solution)?;
+            let sign = fitted.sign.factor();
+            let offset = options.offset.unwrap_or(0.0);
+            let sums: Vec<f64> = predicted.iter().map(|h| offset + sign * h).collect();
+            let outputs = forward(after, self.recordings, &sums)?;
+            squares += outputs
+                .iter()
+                .zip(&measured)
+                .zip(&blocks)
+                .filter(|(_, block)| part.is_none_or(|part| **block == part))
+                .map(|((h, y), _)| (h - y).powi(2))
+                .sum::<f64>();
+        }
+        let (low, high) = range(&measured);
+        Ok(100.0 * (squares / measured.len() as f64).sqrt() / (high - low))
+    }
+}

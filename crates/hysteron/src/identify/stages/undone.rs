@@ -1,0 +1,63 @@
+//! Undoes creep and lag, and puts them behind the operators again.
+
+use crate::error::{Error, Result};
+use crate::model::{Model, Operators, StageConstants};
+use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
+
+pub(super) type After = StageConstants<f64>;
+
+/// The recordings with the output as it was before creep and lag.
+pub(super) fn before(after: &After, recordings: &[Recording]) -> Result<Vec<Recording>> {
+    let around = around(after, recordings)?;
+    let undone = |recording: &Recording| {
+        Ok(Recording {
+            output: around.before_stages(recording)?,
+            ..recording.clone()
+        })
+    };
+    recordings.iter().map(undone).collect()
+}
+
+/// A model of any operators with creep and lag.
+fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
+    let plane = crate::identify::plane_of(&recordings[0], 2)?;
+    let operator = hysteron_core::Operator::Mkp;
+    let operators = Operators::new(operator, plane, vec![0.0; 3], 0.0, Default::default())?;
+    Model::from(operators).with_after(&after.terms(), after.lag())
+}
+
+/// Outputs after creep and lag, from those of the operators.
+pub(super) fn forward(after: &After, recordings: &[Recording], sums: &[f64]) -> Result<Vec<f64>> {
+    let model = around(after, recordings)?;
+    let stages = model.stages();
+    let mut output = Vec::with_capacity(sums.len());
+    let mut from = 0;
+    for recording in recordings {
+        let time = recording.time.as_ref().ok_or_else(no_time)?;
+        let mut past = None;
+        for n in 0..recording.len() {
+            let dt = time[n] - time[n.saturating_sub(1)];
+            let (y, next) = stages.after(past, dt, sums[from + n]);
+            past = Some(next);
+            output.push(y);
+        }
+        from += recording.len();
+    }
+    Ok(output)
+}
+
+/// A recording without time, for options that ask for creep or a lag.
+pub(super) fn no_time() -> Error {
+    let what = "creep, lag and ring depend on time, and the recording has none";
+    let remedy = Remedy::new("name its column ({})", [Setting::any("time")]);
+    Error::Fit(what.into()).remedied(remedy)
+}
+
+/// Refuses recordings without time before anything is computed.
+pub(crate) fn check_time(recordings: &[Recording]) -> Result<()> {
+    match recordings.iter().all(|recording| recording.time.is_some()) {
+        true => Ok(()),
+        false => Err(no_time()),
+    }
+}
