@@ -1,7 +1,7 @@
 //! Looks for a lag that nobody asked for.
 
 use super::after::Report;
-use super::search::Search;
+use super::search::{Search, WORTH};
 use super::undone::After;
 use crate::error::Result;
 use crate::identify::choose::Open;
@@ -16,8 +16,13 @@ const SHORT_BLOCKS: usize = 24;
 
 /// One of these lags, in sampling steps, has to reduce the error on what is fitted by this share, or
 /// none is looked for.
-const HINTS: [f64; 2] = [1.0, 4.0];
+const HINTS: [f64; 2] = [1.0, LONG];
 const HINT: f64 = 0.05;
+
+/// A lag of more sampling steps has to take this share of the error. It smooths whatever the model
+/// does wrong, and so gains a little where there is none.
+const LONG: f64 = 4.0;
+const LONG_WORTH: f64 = 0.5;
 
 /// Looks for a lag; `None` where it does not predict parts of the recordings that were left out, or
 /// samples come at the same time.
@@ -51,7 +56,11 @@ pub(super) fn find(
         without: without.left_out,
         with: with.left_out,
     };
-    let is_worth = with.is_worth(&without, search.noise);
+    let worth = match with.after.lag() > LONG * search.step {
+        true => LONG_WORTH,
+        false => WORTH,
+    };
+    let is_worth = with.gains(worth, &without, search.noise);
     Ok(is_worth.then_some((with.after, report)))
 }
 

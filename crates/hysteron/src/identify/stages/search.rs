@@ -20,7 +20,7 @@ const BLOCKS: usize = 6;
 /// Creep and lag have to reduce the error on blocks left out by this share. Blocks of one recording
 /// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out lost
 /// 13 % on a recording at another frequency.
-const WORTH: f64 = 0.1;
+pub(super) const WORTH: f64 = 0.1;
 
 /// So much of the whole error has to go, whatever the noise is.
 const LEAST: f64 = 0.02;
@@ -66,11 +66,16 @@ impl Candidate {
     /// Whether it is worth more constants than a simpler one has. No model follows the `noise`, so
     /// the share is of the error beyond it, and a small one of the whole.
     pub(super) fn is_worth(&self, simpler: &Self, noise: f64) -> bool {
+        self.gains(WORTH, simpler, noise)
+    }
+
+    /// The same with another share than usual.
+    pub(super) fn gains(&self, worth: f64, simpler: &Self, noise: f64) -> bool {
         let share = |less: f64| 1.0 - (1.0 - less) * (1.0 - less);
         let better = |error: f64, other: f64| {
             let gained = other * other - error * error;
             let beyond = other * other - noise * noise;
-            gained > share(WORTH) * beyond && gained > share(LEAST) * other * other
+            gained > share(worth) * beyond && gained > share(LEAST) * other * other
         };
         better(self.left_out, simpler.left_out) && better(self.fitted, simpler.fitted)
     }
