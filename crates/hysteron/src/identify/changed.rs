@@ -2,6 +2,7 @@
 
 use crate::model::Plane;
 use crate::recording::Recording;
+use crate::series::{branch_spans, usual_tolerance};
 use hysteron_core::{Axis, Direction, Loaded};
 use std::borrow::Cow;
 
@@ -68,6 +69,27 @@ pub(super) fn few<'a>(recordings: &'a [Recording], like: &[Recording]) -> Cow<'a
     let own = recordings.iter().zip(like);
     own.map(|(own, like)| at(own, &kept(&like.input, stride)))
         .collect()
+}
+
+/// A beginning whose input turns so often shows what happens in time.
+const TURNS: usize = 20;
+
+/// The recordings with as many samples as a search in time needs: the beginning of each, where its
+/// input turns often enough, else as [`thin`] keeps.
+pub(super) fn few_in_time(recordings: &[Recording]) -> Cow<'_, [Recording]> {
+    let most = ENOUGH / recordings.len().max(1);
+    if recordings.iter().all(|recording| recording.len() <= most) {
+        return Cow::Borrowed(recordings);
+    }
+    let shortened = |recording: &Recording| {
+        let beginning = recording.part(0..recording.len().min(most));
+        let tolerance = usual_tolerance(&recording.input);
+        match branch_spans(&beginning.input, tolerance).count() < TURNS {
+            true => thin(recording, recording.len().div_ceil(most)),
+            false => beginning,
+        }
+    };
+    recordings.iter().map(shortened).collect()
 }
 
 #[cfg(test)]

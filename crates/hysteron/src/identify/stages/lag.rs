@@ -4,6 +4,7 @@ use super::after::Report;
 use super::search::{Search, WORTH};
 use super::undone::After;
 use crate::error::Result;
+use crate::identify::changed::few_in_time;
 use crate::identify::choose::Open;
 use crate::identify::options::FitOptions;
 use crate::progress::Progress;
@@ -39,7 +40,8 @@ pub(super) fn find(
     }
     // A wrong reading of the input moves the model at once and the output not at all: as if it came
     // late.
-    let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
+    let looked_at = few_in_time(recordings);
+    let right: Vec<Recording> = looked_at.iter().map(with_right_input).collect();
     let mut search = Search::new(&right, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
     let bare = search.creep(0, 0.0)?;
