@@ -79,7 +79,9 @@ export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, aligned = fal
     font: { color: ink("ink"), family: "system-ui, sans-serif", size: 12 },
     margin: { l: aligned ? 68 : 8, r: 12, t: 8, b: 8 },
     showlegend: traces.length > 1,
-    legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0, font: { size: 11 } },
+    // From the edge of the picture, not from that of the curves: where a new width folds the legend, plotly
+    // moves the curves after it has placed the legend.
+    legend: { orientation: "h", yref: "container", y: 1, yanchor: "top", x: 0, font: { size: 11 } },
     hovermode: "closest",
     hoverdistance: 40,
     dragmode: "zoom",
