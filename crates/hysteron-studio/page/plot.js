@@ -55,11 +55,12 @@ export function roundest(low, high) {
   return [];
 }
 
-/** Pictures follow the width of their place. */
+/** Pictures follow the size of their place. */
 const sizes = new ResizeObserver((entries) => {
   for (const { target } of entries) {
     const node = /** @type {any} */ (target);
-    if (node.layout && node.clientWidth > 0 && Math.abs(node.clientWidth - node._fullLayout.width) > 1) requestAnimationFrame(() => Plotly.Plots.resize(node));
+    const isOther = () => Math.abs(node.clientWidth - node._fullLayout.width) > 1 || Math.abs(node.clientHeight - node._fullLayout.height) > 1;
+    if (node.layout && node.clientWidth > 0 && isOther()) requestAnimationFrame(() => Plotly.Plots.resize(node));
   }
 });
 
