@@ -413,7 +413,13 @@ mod tests {
             let (s, c) = (f64::from(k) * 0.6).sin_cos();
             [300.0 + 200.0 * c, 200.0 + 150.0 * s - 1e-3 * f64::from(k)]
         };
-        let spike = |k: u32| if k % 500 == 0 { [1e12, 0.0] } else { circle(k) };
+        let spike = |k: u32| {
+            if k.is_multiple_of(500) {
+                [1e12, 0.0]
+            } else {
+                circle(k)
+            }
+        };
         let drawn = loops((0..100_000).map(spike)).concat();
         assert_eq!(drawn.iter().filter(|point| point[0] == 1e12).count(), 200);
     }
