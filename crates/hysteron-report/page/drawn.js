@@ -140,17 +140,7 @@ class Drawn {
       if (x == null || y == null) return [];
       return [
         {
-          type: "circle",
-          xref: `x${n + 1}`,
-          yref: `y${n + 1}`,
-          xsizemode: "pixel",
-          ysizemode: "pixel",
-          xanchor: x,
-          yanchor: y,
-          x0: -6,
-          x1: 6,
-          y0: -6,
-          y1: 6,
+          ...ringAround(n, x, y),
           line: { color: "#b0588a", width: 2.5 },
         },
       ];

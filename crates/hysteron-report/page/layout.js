@@ -32,6 +32,26 @@ const dashOf = ({ dash }) => {
   return lengths.map((length) => `${Math.max(1.5, Number(length))}px`).join(",") || "solid";
 };
 
+/**
+ * A ring around a sample.
+ * @param {number} n the panel
+ * @param {number} x
+ * @param {number} y
+ */
+const ringAround = (n, x, y) => ({
+  type: "circle",
+  xref: `x${n + 1}`,
+  yref: `y${n + 1}`,
+  xsizemode: "pixel",
+  ysizemode: "pixel",
+  xanchor: x,
+  yanchor: y,
+  x0: -6,
+  x1: 6,
+  y0: -6,
+  y1: 6,
+});
+
 /** Axes, lines, areas and words of a figure, as plotly takes them. */
 class Frame {
   /**
@@ -112,7 +132,7 @@ class Frame {
       y0: this.up(y + height),
       y1: this.up(y),
     });
-    return this.plots.flatMap(({ area, bands, levels, uprights }, n) => {
+    return this.plots.flatMap(({ area, bands, levels, uprights, rings }, n) => {
       const [xref, yref] = [`x${n + 1}`, `y${n + 1}`];
       const wide = {
         xref: "paper",
@@ -135,6 +155,7 @@ class Frame {
         ...uprights.map(([x, stroke]) => {
           return { type: "line", xref, x0: x, x1: x, ...high(area), line: line(stroke) };
         }),
+        ...rings.map(([[x, y], stroke]) => ({ ...ringAround(n, x, y), line: line(stroke) })),
       ];
     });
   }

@@ -25,6 +25,7 @@
  * @property {number | null} foot where the x axis stands, if that is below the panel
  * @property {[number, Stroke][]} levels
  * @property {[number, Stroke, string][]} uprights
+ * @property {[Ends, Stroke][]} rings around samples
  */
 /** @typedef {{sample: number, samples: number}} Pointed */
 /** @typedef {{at: Ends, anchor: "start" | "end", size: number, colour: string, text: string}} Words */

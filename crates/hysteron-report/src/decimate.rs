@@ -214,7 +214,11 @@ fn straight(piece: &[Point]) -> Vec<Point> {
     kept
 }
 
-/// The segments that touch at least one pixel that no earlier segment has touched.
+/// A segment of more pixels leads far beyond the picture.
+const FAR: f64 = 2000.0;
+
+/// The segments that touch at least one pixel that no earlier segment has touched, and those that
+/// lead far away.
 fn uncovered(pieces: &[Vec<Point>]) -> Vec<Vec<Point>> {
     let mut drawn: HashSet<(i32, i32)> = HashSet::new();
     let mut kept: Vec<Vec<Point>> = Vec::new();
@@ -222,10 +226,15 @@ fn uncovered(pieces: &[Vec<Point>]) -> Vec<Vec<Point>> {
         let mut run: Vec<Point> = Vec::new();
         for pair in piece.windows(2) {
             let &[from, to] = pair else { continue };
-            let steps = distance(from, to).ceil().max(1.0) as usize;
-            let mut new = false;
+            let length = distance(from, to);
+            let mut new = length > FAR;
+            let steps = if new {
+                0
+            } else {
+                length.ceil().max(1.0) as usize
+            };
             for step in 0..=steps {
-                let share = step as f64 / steps as f64;
+                let share = step as f64 / steps.max(1) as f64;
                 let at =
                     |axis: usize| (from[axis] + share * (to[axis] - from[axis])).floor() as i32;
                 new |= drawn.insert((at(0), at(1)));
@@ -396,6 +405,23 @@ mod tests {
         let circle = (0..100_000).map(|k| (f64::from(k) * 1e-4).sin_cos());
         let circle: Vec<Point> = circle.map(|(s, c)| [200.0 * c, 200.0 * s]).collect();
         assert!(straight(&circle).len() < 250, "{}", straight(&circle).len());
+    }
+
+    #[test]
+    fn a_way_far_beyond_the_picture_takes_no_time() {
+        let circle = |k: u32| {
+            let (s, c) = (f64::from(k) * 0.6).sin_cos();
+            [300.0 + 200.0 * c, 200.0 + 150.0 * s - 1e-3 * f64::from(k)]
+        };
+        let spike = |k: u32| {
+            if k.is_multiple_of(500) {
+                [1e12, 0.0]
+            } else {
+                circle(k)
+            }
+        };
+        let drawn = loops((0..100_000).map(spike)).concat();
+        assert_eq!(drawn.iter().filter(|point| point[0] == 1e12).count(), 200);
     }
 
     #[test]

@@ -81,13 +81,12 @@ impl Layout {
 }
 
 fn section<V>(section: &Section<V>, view: &V, drawn: &[Drawn]) -> Markup {
-    let number = |figure: &Figure<V>| drawn.iter().position(|drawn| drawn.stem == figure.stem);
-    let picture =
-        |figure| html! { @if let Some(n) = number(figure) { (self::picture(n, &drawn[n])) } };
+    let found = |figure: &Figure<V>| drawn.iter().find(|drawn| drawn.stem == figure.stem);
+    let picture = |figure| html! { @if let Some(drawn) = found(figure) { (self::picture(drawn)) } };
     let [above, below] = (section.notes)(view);
     let is_empty = above.0.is_empty()
         && below.0.is_empty()
-        && section.figures().all(|figure| number(figure).is_none());
+        && section.figures().all(|figure| found(figure).is_none());
     let content = html! {
         (above)
         @for row in &section.rows {
@@ -102,16 +101,18 @@ fn section<V>(section: &Section<V>, view: &V, drawn: &[Drawn]) -> Markup {
     }
 }
 
-/// The figure `number`, counted from 0. Its width is in pixels: all figures of a page have one
+/// A figure, with the name of its file: it has no other number on the page. Its width is in pixels: all figures of a page have one
 /// scale, and so one size of text.
-fn picture(number: usize, figure: &Drawn) -> Markup {
+fn picture(figure: &Drawn) -> Markup {
     html! {
         figure id=(figure.stem) style={"--width:" (figure.width)} {
             div.wide { (PreEscaped(&figure.drawing.svg)) }
             figcaption {
-                b { "Figure " (number + 1) ". " (figure.title) "." } " " (figure.caption)
-                @if let Some(number) = figure.chapter {
-                    " " span.beside { "Beside Fig. " (number) " of the chapter." }
+                b { (figure.title) "." } " " (figure.caption)
+                " " span.beside {
+                    (figure.stem)
+                    @if let Some(number) = figure.chapter { ", beside Fig. " (number) " of the chapter" }
+                    "."
                 }
             }
         }

@@ -48,11 +48,12 @@ export function marks() {
  * @param {number} file
  * @param {[number, number] | null} window
  */
-export function choose(file, window = null) {
+export async function choose(file, window = null) {
   Object.assign(now, { file, window, area: ALL });
   if (!window) now.whole = null;
   // The tasks are about the file that is shown.
-  now.changed?.(now.overview);
+  await now.changed?.(now.overview);
+  reveal();
 }
 
 /**
@@ -67,6 +68,22 @@ export async function point(file, time) {
     await now.changed?.(now.overview);
   }
   await play.to(time);
+  reveal();
+}
+
+/**
+ * Where no picture is in view, as on a phone that shows the list of fits, goes to them. The keys go along: they
+ * move the sample from there.
+ */
+function reveal() {
+  const inView = BANDS.some(([, id]) => {
+    const { top, bottom, height } = by(id).getBoundingClientRect();
+    return height > 0 && (top + bottom) / 2 > 0 && (top + bottom) / 2 < innerHeight;
+  });
+  if (inView) return;
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  by("look").scrollIntoView({ behavior: still ? "auto" : "smooth" });
+  by("play-at").focus({ preventScroll: true });
 }
 
 const again = () => show(now.overview, now.drawn, now.changed);
@@ -116,6 +133,7 @@ function tools() {
 /** Fetches what the pixels can show, and draws it. */
 async function redraw() {
   const mine = ++now.asked;
+  play.of(now.file);
   const before = now.beyond.size > 0;
   const bands = BANDS.filter(([band]) => now.drawn.size > 0 || ["output", "input", "loop"].includes(band));
   for (const band of now.beyond) if (!bands.some(([name]) => name === band)) now.beyond.delete(band);
@@ -149,7 +167,8 @@ async function picture([band, id], mine) {
     name: raw ? "as read" : fit === null ? "measured" : `fit ${place(fit) + 1}`,
     line: raw ? { color: "#e69f00", width: 1 } : stroke(fit === null ? null : place(fit)),
     marker: { color: stroke(fit === null ? null : place(fit)).color, size: 3 },
-    opacity: band === "histogram" && curves.lines.length > 1 ? 0.6 : 1,
+    // Of several fits none hides another.
+    opacity: ["histogram", "residuals_over_input"].includes(band) && curves.lines.length > 1 ? 0.6 : 1,
     connectgaps: false,
   }));
   const overTime = OVER_TIME.has(band);
@@ -169,7 +188,7 @@ async function picture([band, id], mine) {
   if (across?.beyond || up?.beyond) now.beyond.add(band);
   else now.beyond.delete(band);
   await draw(node, [...below, ...lines, ...above], {
-    x: curves.x, y: curves.y, shapes: [...(overTime ? layers.shapes(curves, band === "output") : []), ...play.shapes(id)], barmode: "overlay", bargap: 0,
+    x: curves.x, y: curves.y, shapes: [...(overTime ? layers.shapes(curves, band === "output") : []), ...play.shapes(id, range ?? null, height)], barmode: "overlay", bargap: 0,
     xaxis: range ? { range: [...range] } : {},
     yaxis: { ...(height ? { range: [...height] } : {}), fixedrange: !isLoop },
     dragmode: now.marking && band === "output" ? "select" : band === "histogram" ? false : "zoom",

@@ -99,18 +99,20 @@ export async function show(overview, drawn, file = now.file) {
     now.chosen = false;
   }
   const fits = overview.fits.filter((/** @type {any} */ fit) => drawn.has(fit.id));
+  const at = now.at?.[0] === now.file ? now.at : null;
+  const there = /** @type {Record<string, boolean>} */ ({ states: Boolean(at) });
+  there.errors = there.excitation = Boolean(fits.find((/** @type {any} */ fit) => fit.id === now.fit)?.confidence);
+  const asked = there[now.kind] ?? true ? now.kind : "weights";
   const again = () => show(overview, drawn);
   const name = (/** @type {any} */ fit) => `fit ${overview.fits.indexOf(fit) + 1}`;
   fill(
     by("plane-tools"),
     el("label", {}, "Plane of ", el("select", { "data-key": "plane-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), again()) }, ...fits.map((/** @type {any} */ fit) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, name(fit))))),
-    el("label", {}, "Show ", el("select", { "data-key": "plane-kind", onchange: (/** @type {any} */ e) => ((now.kind = e.target.value), again()) }, ...KINDS.map(([kind, text]) => el("option", { value: kind, selected: kind === now.kind, disabled: kind === "states" && !now.at }, text)))),
+    el("label", {}, "Show ", el("select", { "data-key": "plane-kind", onchange: (/** @type {any} */ e) => ((now.kind = e.target.value), again()) }, ...KINDS.map(([kind, text]) => el("option", { value: kind, selected: kind === asked, disabled: there[kind] === false }, text)))),
   );
-  const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.at }).catch(() => null);
-  if (!seen) {
-    Object.assign(now, { kind: "weights", at: null });
-    return;
-  }
+  const seen = await ask("plane", { fit: now.fit, kind: asked, at }).catch(() => null);
+  if (!seen) return;
+  /** @type {any} */ (by("plane-tools").querySelector('[data-key="plane-kind"]')).value = seen.kind;
   const isClass = seen.kind === "excitation";
   const ends = isClass ? { zmin: -0.5, zmax: 3.5 } : seen.kind === "states" ? { zmin: 0, zmax: 1 } : { zmin: 0 };
   const scale = isClass ? SCALE : "Viridis";
@@ -125,9 +127,10 @@ export async function show(overview, drawn, file = now.file) {
   }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: axis, yaxis: { ...axis }, dragmode: false });
   on(by("plot-plane"), "plotly_click", (event) => {
     const { x, y, z } = event.points[0];
-    if (z !== null) follow(seen.levels, Number(x), Number(y));
+    if (z !== null && !seen.left_out) follow(seen.levels, Number(x), Number(y));
   });
   by("plane-text").textContent = seen.sample
-    ? `${now.followed?.row === seen.sample.row ? now.followed.words : ""}The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
+    ? `${now.followed?.row === seen.sample.row ? now.followed?.words : ""}The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
+    : seen.left_out ? `There is no staircase: fit ${overview.fits.findIndex((/** @type {any} */ fit) => fit.id === now.fit) + 1} cannot be run on this file.`
     : "One cell for each operator, which switches on at β and off at α. Click a cell for the sample at which it switches, or a sample for its staircase.";
 }

@@ -14,6 +14,11 @@ const SPEEDS = [60, 20, 8, 3];
 /** @type {{file: number|null, range: [number, number], at: number|null, sample: Sample|null, overview: any, drawn: Set<number>, seconds: number, timer: number, waiting: boolean, busy: boolean, steps: number}} */
 const now = { file: null, range: [0, 1], at: null, sample: null, overview: null, drawn: new Set(), seconds: 20, timer: 0, waiting: false, busy: false, steps: 1 };
 
+/** Says which file is shown: a sample of another one is forgotten. @param {number|null} file */
+export function of(file) {
+  if (file !== now.file) Object.assign(now, { file, at: null, sample: null });
+}
+
 /**
  * The bar with the button, the speed, and the place in time.
  * @param {any} overview
@@ -23,10 +28,10 @@ const now = { file: null, range: [0, 1], at: null, sample: null, overview: null,
  * @param {number} samples in it
  */
 export function show(overview, drawn, file, range, samples) {
-  if (file !== now.file) Object.assign(now, { at: null, sample: null });
+  of(file);
   // After a preparation or another fit the same time may be another row and value.
   const stale = now.at !== null && now.overview !== null && now.overview !== overview;
-  Object.assign(now, { overview, drawn, file, range, steps: Math.max(1, samples) });
+  Object.assign(now, { overview, drawn, range, steps: Math.max(1, samples) });
   if (stale) to(/** @type {number} */ (now.at));
   const [low, high] = range;
   const title = now.timer ? "Pause" : "Play";
@@ -75,28 +80,36 @@ export async function to(time) {
   now.busy = true;
   while (now.waiting && now.at !== null) {
     now.waiting = false;
-    now.sample = await ask("sample", { file: now.file, fits: [...now.drawn], at: now.at }).catch(() => null);
+    const file = now.file;
+    const sample = await ask("sample", { file, fits: [...now.drawn], at: now.at }).catch(() => null);
+    if (file !== now.file) continue;
+    now.sample = sample;
     by("play-sample").textContent = words();
     by("play-at").value = String(now.at);
     for (const id of [...OVER_TIME, "plot-loop", "plot-over-input"]) if (by(id).layout) await mark(by(id), shapes(id));
-    if (now.drawn.size > 0) await plane.at(now.file, now.at, now.overview, now.drawn);
+    if (file === now.file && now.at !== null && now.drawn.size > 0) await plane.at(file, now.at, now.overview, now.drawn);
   }
   now.busy = false;
 }
 
+/** A value on an axis; one beyond it is at its end. @param {number} value @param {[number, number] | null} ends */
+const within = (value, ends) => (ends ? Math.min(ends[1], Math.max(ends[0], value)) : value);
+
 /**
- * The mark of the sample in a view.
+ * The mark of the sample in a view. Off the scale it is at the edge, as outliers are.
  * @param {string} id
+ * @param {[number, number] | null} across the ends of the axes; null for all that there is
+ * @param {[number, number] | null} up
  * @returns {object[]}
  */
-export function shapes(id) {
+export function shapes(id, across = by(id).layout?.xaxis.range, up = by(id).layout?.yaxis.range) {
   if (!now.sample) return [];
   const { time, input, output } = now.sample;
   const line = { color: "#d55e00", width: 2 };
   if (OVER_TIME.includes(id)) return [{ type: "line", name: "now", xref: "x", yref: "paper", x0: time, x1: time, y0: 0, y1: 1, line }];
-  const round = { type: "circle", name: "now", xsizemode: "pixel", ysizemode: "pixel", xanchor: input, yanchor: output, x0: -7, x1: 7, y0: -7, y1: 7 };
+  const round = { type: "circle", name: "now", xsizemode: "pixel", ysizemode: "pixel", xanchor: within(input, across), yanchor: within(output, up), x0: -7, x1: 7, y0: -7, y1: 7 };
   // One circle for each fit.
-  if (id === "plot-over-input") return now.sample.modelled.map(([, value]) => ({ ...round, yanchor: value - output, fillcolor: "rgba(213,94,0,.5)", line }));
+  if (id === "plot-over-input") return now.sample.modelled.map(([, value]) => ({ ...round, yanchor: within(value - output, up), fillcolor: "rgba(213,94,0,.5)", line }));
   return id === "plot-loop" ? [{ ...round, fillcolor: "rgba(213,94,0,.5)", line }] : [];
 }
 

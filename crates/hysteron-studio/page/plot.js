@@ -55,11 +55,12 @@ export function roundest(low, high) {
   return [];
 }
 
-/** Pictures follow the width of their place. */
+/** Pictures follow the size of their place. */
 const sizes = new ResizeObserver((entries) => {
   for (const { target } of entries) {
     const node = /** @type {any} */ (target);
-    if (node.layout && node.clientWidth > 0 && Math.abs(node.clientWidth - node._fullLayout.width) > 1) requestAnimationFrame(() => Plotly.Plots.resize(node));
+    const isOther = () => Math.abs(node.clientWidth - node._fullLayout.width) > 1 || Math.abs(node.clientHeight - node._fullLayout.height) > 1;
+    if (node.layout && node.clientWidth > 0 && isOther()) requestAnimationFrame(() => Plotly.Plots.resize(node));
   }
 });
 
@@ -79,7 +80,9 @@ export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, aligned = fal
     font: { color: ink("ink"), family: "system-ui, sans-serif", size: 12 },
     margin: { l: aligned ? 68 : 8, r: 12, t: 8, b: 8 },
     showlegend: traces.length > 1,
-    legend: { orientation: "h", y: 1.01, yanchor: "bottom", x: 0, font: { size: 11 } },
+    // From the edge of the picture, not from that of the curves: where a new width folds the legend, plotly
+    // moves the curves after it has placed the legend.
+    legend: { orientation: "h", yref: "container", y: 1, yanchor: "top", x: 0, font: { size: 11 } },
     hovermode: "closest",
     hoverdistance: 40,
     dragmode: "zoom",

@@ -5,6 +5,26 @@ use super::shape::{Rect, Short, rect_data};
 use super::style::Stroke;
 use std::fmt::Write;
 
+/// Pixels from the middle of a ring around a sample to its edge.
+pub(crate) const AROUND: f64 = 6.0;
+
+/// An open ring around a sample, which stays in sight.
+pub(crate) fn ring_around(canvas: &mut Canvas, [x, y]: [f64; 2], stroke: &Stroke) {
+    let mut d = String::new();
+    circle(&mut d, [x, y], AROUND);
+    canvas.path(&d, None, Some(stroke));
+}
+
+// Writing to a string cannot fail.
+fn circle(d: &mut String, [x, y]: [f64; 2], radius: f64) {
+    let (start, r, across) = (Short(x - radius), Short(radius), Short(2.0 * radius));
+    let _ = write!(
+        d,
+        "M{start} {}a{r} {r} 0 1 0 {across} 0a{r} {r} 0 1 0 -{across} 0z",
+        Short(y)
+    );
+}
+
 /// The shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Marker {
@@ -35,13 +55,8 @@ impl Marker {
         for [x, y] in points {
             let _ = match self {
                 Self::Ring | Self::Disc => {
-                    let (start, r, across) =
-                        (Short(x - radius), Short(radius), Short(2.0 * radius));
-                    write!(
-                        d,
-                        "M{start} {}a{r} {r} 0 1 0 {across} 0a{r} {r} 0 1 0 -{across} 0z",
-                        Short(y)
-                    )
+                    circle(&mut d, [x, y], radius);
+                    Ok(())
                 }
                 Self::Square => {
                     let side = 1.8 * radius;

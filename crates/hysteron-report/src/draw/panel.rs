@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::Canvas;
+use super::marker::ring_around;
 use super::plot::{Line, Plot, Shown};
 use super::shape::{Anchor, Rect, rect_data};
 use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
@@ -205,6 +206,12 @@ impl Panel {
                     .push((x, *stroke, printable(words).into_owned()))
             });
         }
+    }
+
+    /// A ring around a sample.
+    pub(crate) fn ring(&self, canvas: &mut Canvas, [x, y]: [f64; 2], stroke: &Stroke) {
+        ring_around(canvas, self.point(x, y), stroke);
+        self.plot(canvas, |plot| plot.rings.push(([x, y], *stroke)));
     }
 
     /// Notes in numbers what was drawn.

@@ -24,6 +24,8 @@ pub(crate) struct Plot {
     pub(crate) levels: Vec<(f64, Stroke)>,
     /// Lines at an x with their words.
     pub(crate) uprights: Vec<(f64, Stroke, String)>,
+    /// Rings around samples.
+    pub(crate) rings: Vec<([f64; 2], Stroke)>,
 }
 
 /// An axis, as numbers.
@@ -92,6 +94,7 @@ impl Plot {
             foot: None,
             levels: Vec::new(),
             uprights: Vec::new(),
+            rings: Vec::new(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The sheet that carries panels: title, note and legend above, so that they never hide data.
 
 use super::canvas::Canvas;
-use super::marker::Marker;
+use super::marker::{Marker, ring_around};
 use super::plot::{Plot, Words};
 use super::shape::{Anchor, Rect};
 use super::style::{AXIS, FAINT, INK, LABEL, Stroke, TITLE};
@@ -23,6 +23,8 @@ pub(crate) enum Key {
     Line(Stroke, String),
     /// A filled area and what it is.
     Area(&'static str, String),
+    /// A ring around a sample, and which sample it is.
+    Ring(Stroke, String),
     /// A marker, what it is, and a subscript to that.
     Marker(Marker, String, &'static str),
     /// A remark.
@@ -96,6 +98,7 @@ impl Sheet {
             let (sample, words, subscript) = match key {
                 Key::Line(_, words) => (SAMPLE + 7.0, words, ""),
                 Key::Area(_, words) => (24.0 + 7.0, words, ""),
+                Key::Ring(_, words) => (12.0 + 5.0, words, ""),
                 Key::Marker(_, words, subscript) => (12.0 + 5.0, words, *subscript),
                 Key::Text(words) => (0.0, words, ""),
             };
@@ -107,7 +110,9 @@ impl Sheet {
             }
             self.sample(key, [x, y]);
             match key {
-                Key::Line(stroke, words) => self.lines.push((*stroke, label(words))),
+                Key::Line(stroke, words) | Key::Ring(stroke, words) => {
+                    self.lines.push((*stroke, label(words)))
+                }
                 Key::Area(fill, words) => self.areas.push((*fill, label(words))),
                 Key::Marker(..) | Key::Text(_) => {}
             }
@@ -141,6 +146,7 @@ impl Sheet {
                     Some(&Stroke { width: 0.5, ..AXIS }),
                 );
             }
+            Key::Ring(stroke, _) => ring_around(&mut self.canvas, [x + 6.0, y], stroke),
             Key::Marker(marker, ..) => marker.draw(&mut self.canvas, [[x + 6.0, y]], 4.5),
             Key::Text(_) => {}
         }

@@ -64,13 +64,15 @@ pub(crate) const AXIS: Stroke = Stroke::solid("#444b54", 1.0);
 pub(crate) const GRID: Stroke = Stroke::solid("#e6e9ed", 0.8);
 /// The line of no discrepancy.
 pub(crate) const ZERO: Stroke = Stroke::solid("#8a929c", 1.0);
-/// Outlines and pointers.
 /// A level that a picture refers to.
 pub(crate) const GUIDE: Stroke = Stroke {
     colour: "#444b54",
     width: 1.1,
     dash: "4 3",
 };
+
+/// The ring around the sample that a figure points out; its shape alone tells it on a grey print.
+pub(crate) const POINTED: Stroke = Stroke::solid("#b3006b", 2.0);
 
 /// What the output should be: wide and pale, under the curve that follows it.
 pub(crate) const REFERENCE: Stroke = Stroke::solid("#a9b3be", 4.2);

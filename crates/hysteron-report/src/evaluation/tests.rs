@@ -1,7 +1,7 @@
 //! Reports as a whole, of good recordings and of poor ones.
 #![allow(clippy::unwrap_used)]
 
-use crate::draw::style::MEASURED;
+use crate::draw::style::{MEASURED, POINTED};
 use crate::evaluation::fixture::{Fixture, sma};
 use crate::made::Made;
 use crate::report::{Report, Shown};
@@ -299,6 +299,43 @@ fn all_figures_of_a_page_have_one_scale() {
             .and_then(|rest| rest.split(' ').next());
         assert_eq!(width, drawn);
     }
+}
+
+/// The sample of the verdict has a ring in the loop and over the time, and is named beside it; that
+/// of a second recording too.
+#[test]
+fn the_worst_sample_has_a_ring() {
+    let fixture = sma(400);
+    let mut second = fixture.recording.clone();
+    second.output[123] += 3.0;
+    let recordings = [fixture.recording.clone(), second];
+    let evaluation = evaluate(&fixture.model, &recordings).unwrap();
+    let report = Report {
+        title: "",
+        shown: Shown::Evaluation {
+            model: &fixture.model,
+            recordings: &recordings,
+            evaluation: &evaluation,
+        },
+        made: Made::default(),
+    };
+    for stem in [
+        "fig10-output-time",
+        "fig11-loops",
+        "fig12-output-discrepancy",
+    ] {
+        let svg = report.svg(stem).unwrap().unwrap();
+        assert!(svg.contains("worst: recording 2, sample 124"), "{stem}");
+        // One in the legend, one in the panel.
+        let ring = format!("stroke=\"{}\"", POINTED.colour);
+        assert_eq!(svg.matches(&ring).count(), 2, "{stem}");
+    }
+    let page = report.page().unwrap();
+    assert!(
+        page.contains("<b>Displacement over temperature.</b>"),
+        "a title alone"
+    );
+    assert!(page.contains("fig11-loops, beside Fig. 11 of the chapter."));
 }
 
 #[test]

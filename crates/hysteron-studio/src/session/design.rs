@@ -89,7 +89,7 @@ impl Session {
         let found = self.profile(wish)?;
         let count = found.plane.levels();
         let points = found.time.iter().zip(&found.input).map(|(t, u)| [*t, *u]);
-        let (time, input) = thinned(points, PIXELS, Shape::OverTime);
+        let (time, input) = thinned(points, PIXELS, [None; 2], Shape::OverTime);
         let before = match &found.recorded {
             Some(recorded) => recorded.clone(),
             None => vec![Excitation::Never; found.excitation.len()],

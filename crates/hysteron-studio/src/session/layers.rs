@@ -155,25 +155,31 @@ impl Session {
         seen: &Seen<'_>,
     ) -> Result<Vec<(f64, f64)>, Fault> {
         let course = self.course(fit, view.file)?;
+        let rows = self.outlier_rows(fit, view.file)?;
+        let rows = rows.into_iter().filter(|n| seen.shows(*n));
+        let points = rows.filter_map(|n| view.picture.point(seen.recording, Some(&course), n));
+        Ok(points.take(OUTLIERS).map(|[x, y]| (x, y)).collect())
+    }
+
+    /// The samples of a file, counted from 0, that a fit took for outliers.
+    pub(super) fn outlier_rows(&self, fit: Id, file: Id) -> Result<Vec<usize>, Fault> {
         let fitted = self.fitted(fit)?;
         // Recordings are counted through all files of the fit, which have to be there for that.
-        let before = fitted.files.iter().take_while(|id| **id != view.file);
+        let before = fitted.files.iter().take_while(|id| **id != file);
         let count = |id: &Id| Some(self.file(*id).ok()?.parts().ok()?.all().len());
         let before: Option<usize> = before.map(count).sum();
         let found = fitted.model.fit.as_ref().map(|fit| &fit.outliers);
-        let (Some(before), Some(found), true) = (before, found, fitted.files.contains(&view.file))
+        let (Some(before), Some(found), true) = (before, found, fitted.files.contains(&file))
         else {
             return Ok(Vec::new());
         };
-        let begins: Vec<usize> = self.file(view.file)?.parts()?.begins().collect();
+        let begins: Vec<usize> = self.file(file)?.parts()?.begins().collect();
         let row = |(recording, sample): (usize, usize)| {
             let recording = recording.checked_sub(before)?;
             begins.get(recording)?.checked_add(sample)
         };
         let found = found.iter().map(|one| (one.recording, one.sample));
-        let rows = found.filter_map(row).filter(|n| seen.shows(*n));
-        let points = rows.filter_map(|n| view.picture.point(seen.recording, Some(&course), n));
-        Ok(points.take(OUTLIERS).map(|[x, y]| (x, y)).collect())
+        Ok(found.filter_map(row).collect())
     }
 }
 

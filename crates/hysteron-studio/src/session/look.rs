@@ -6,7 +6,7 @@ use super::layers::Layers;
 use super::parts::Parts;
 use super::seen::Seen;
 use super::state::{MOST, Session};
-use super::thinned::{Ends, fair_ends, histogram, when};
+use super::thinned::{Ends, Scale, fair_ends, histogram, when};
 use super::view::{Picture, View};
 use hysteron::{Start, forward};
 use serde::Serialize;
@@ -120,34 +120,7 @@ impl Session {
             None => "sample".to_owned(),
         };
         let measured = |n: usize| recording.output[n];
-        let line = |fit, (x, y)| Line {
-            fit,
-            raw: false,
-            x,
-            y,
-        };
-        let mut lines = Vec::new();
-        if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
-            lines.extend(before(raw, view));
-        }
         let residual = |course: &Arc<Vec<f64>>, n: usize| course[n] - recording.output[n];
-        match view.picture {
-            Picture::Input => lines.push(line(None, seen.over_time(|n| recording.input[n]))),
-            Picture::Output => lines.push(line(None, seen.over_time(measured))),
-            Picture::Loop => lines.push(line(None, seen.over_input(measured))),
-            Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => {}
-        }
-        for (fit, course) in &courses {
-            let points = match view.picture {
-                Picture::Input => continue,
-                Picture::Output => seen.over_time(|n| course[n]),
-                Picture::Loop => seen.over_input(|n| course[n]),
-                Picture::Residuals => seen.over_time(|n| residual(course, n)),
-                Picture::ResidualsOverInput => seen.over_input(|n| residual(course, n)),
-                Picture::Histogram => histogram(seen.kept().map(|n| residual(course, n))),
-            };
-            lines.push(line(Some(*fit), points));
-        }
         let fair = |of: &dyn Fn(usize) -> f64| fair_ends(seen.kept().map(of));
         let input_ends = || fair(&|n| recording.input[n]);
         let of_courses = |of: &dyn Fn(&Arc<Vec<f64>>, usize) -> f64| {
@@ -171,6 +144,35 @@ impl Session {
             Picture::Loop | Picture::ResidualsOverInput => input_ends(),
             _ => None,
         };
+        let scale = view.scale([across, up]);
+        let seen = seen.at(scale);
+        let line = |fit, (x, y)| Line {
+            fit,
+            raw: false,
+            x,
+            y,
+        };
+        let mut lines = Vec::new();
+        if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
+            lines.extend(before(raw, view, scale));
+        }
+        match view.picture {
+            Picture::Input => lines.push(line(None, seen.over_time(|n| recording.input[n]))),
+            Picture::Output => lines.push(line(None, seen.over_time(measured))),
+            Picture::Loop => lines.push(line(None, seen.over_input(measured))),
+            Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => {}
+        }
+        for (fit, course) in &courses {
+            let points = match view.picture {
+                Picture::Input => continue,
+                Picture::Output => seen.over_time(|n| course[n]),
+                Picture::Loop => seen.over_input(|n| course[n]),
+                Picture::Residuals => seen.over_time(|n| residual(course, n)),
+                Picture::ResidualsOverInput => seen.over_input(|n| residual(course, n)),
+                Picture::Histogram => histogram(seen.kept().map(|n| residual(course, n))),
+            };
+            lines.push(line(Some(*fit), points));
+        }
         // Short, because it stands beside a low picture.
         let difference = match &recording.output_quantity.unit {
             Some(unit) => format!("residual [{unit}]"),
@@ -213,8 +215,8 @@ fn few(fits: &[Id]) -> Result<(), Fault> {
 }
 
 /// The line of a recording before its preparation, in the pictures that have one.
-fn before(raw: &Parts, view: &View) -> Option<Line> {
-    let seen = Seen::new(raw, view);
+fn before(raw: &Parts, view: &View, scale: Scale) -> Option<Line> {
+    let seen = Seen::new(raw, view).at(scale);
     let raw = seen.recording;
     let (x, y) = match view.picture {
         Picture::Input => seen.over_time(|n| raw.input[n]),

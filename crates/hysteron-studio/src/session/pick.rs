@@ -10,6 +10,7 @@ use super::view::{Picture, View};
 use hysteron::{Recording, Sample, Surroundings};
 use hysteron_report::decimate::Point;
 use serde::Serialize;
+use std::collections::HashSet;
 
 /// The sample with the largest residual of a fit.
 #[derive(Debug, Clone, Serialize)]
@@ -129,7 +130,7 @@ impl Session {
     }
 
     /// The sample with the largest residual of a fit, in the files that it was fitted to and tested
-    /// on.
+    /// on. As in the verdict, readings that the fit took for outliers do not count.
     pub(super) fn worst(&mut self, fit: Id) -> Result<WorstView, Fault> {
         let fitted = self.fitted(fit)?;
         let files = fitted.files.iter().chain(&fitted.validated).copied();
@@ -140,8 +141,9 @@ impl Session {
                 continue;
             };
             let course = self.course(fit, file)?;
+            let outliers: HashSet<usize> = self.outlier_rows(fit, file)?.into_iter().collect();
             let residuals = course.iter().zip(&recording.output).enumerate();
-            for (n, (modelled, measured)) in residuals {
+            for (n, (modelled, measured)) in residuals.filter(|(n, _)| !outliers.contains(n)) {
                 let residual = (modelled - measured).abs();
                 if worst.is_none_or(|(largest, ..)| residual > largest) {
                     worst = Some((residual, file, n));

@@ -24,7 +24,7 @@ pub enum PlaneKind {
 /// The plane of a fit.
 #[derive(Debug, Clone, Serialize)]
 pub struct PlaneView {
-    /// What is shown.
+    /// What is shown: the weights, where it is the states at a sample that there are none at.
     pub kind: PlaneKind,
     /// The levels, in the input's unit.
     pub levels: Vec<f64>,
@@ -39,6 +39,8 @@ pub struct PlaneView {
     pub staircase: Vec<[f64; 2]>,
     /// The sample pointed at.
     pub sample: Option<SampleView>,
+    /// Why there are no states at the sample asked for: the fit cannot be run on its file.
+    pub left_out: Option<Fault>,
 }
 
 /// A sample of a file.
@@ -97,13 +99,18 @@ impl Session {
                 "fit with “bootstrap” 60",
             )
         };
-        let (sample, state) = match at {
-            None => (None, None),
-            Some((file, time)) => {
-                let sample = self.sample(file, &[fit], time)?;
-                let state = self.state_at(fit, file, sample.row)?;
-                (Some(sample), Some(state))
+        let (mut sample, mut state, mut left_out) = (None, None, None);
+        if let Some((file, time)) = at {
+            let found = self.sample(file, &[fit], time)?;
+            match self.course(fit, file) {
+                Ok(_) => state = Some(self.state_at(fit, file, found.row)?),
+                Err(why) => left_out = Some(why),
             }
+            sample = state.is_some().then_some(found);
+        }
+        let kind = match (kind, &left_out) {
+            (PlaneKind::States, Some(_)) => PlaneKind::Weights,
+            _ => kind,
         };
         let values: Vec<f64> = match kind {
             PlaneKind::Weights => model.weights().to_vec(),
@@ -137,6 +144,7 @@ impl Session {
             },
             staircase: state.map_or(Vec::new(), |state| state.staircase()),
             sample,
+            left_out,
         })
     }
 

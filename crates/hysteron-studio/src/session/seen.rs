@@ -1,7 +1,7 @@
 //! The samples that a view shows, and lines through them.
 
 use super::parts::Parts;
-use super::thinned::{Points, Shape, rows, thinned, when};
+use super::thinned::{Points, Scale, Shape, rows, thinned, when};
 use super::view::{Picture, View};
 use hysteron::Recording;
 use hysteron_report::decimate::Point;
@@ -16,6 +16,7 @@ pub(super) struct Seen<'r> {
     /// The first sample of each recording but the first one.
     begins: Vec<usize>,
     pixels: (u32, u32),
+    scale: Scale,
     picture: Picture,
 }
 
@@ -28,10 +29,16 @@ impl<'r> Seen<'r> {
             shown: shown.collect(),
             begins: parts.begins().skip(1).collect(),
             pixels: view.pixels,
+            scale: [None; 2],
             picture: view.picture,
             recording,
             rows,
         }
+    }
+
+    /// The same, drawn at a scale.
+    pub(super) fn at(self, scale: Scale) -> Self {
+        Self { scale, ..self }
     }
 
     /// The samples.
@@ -48,7 +55,7 @@ impl<'r> Seen<'r> {
     /// A value at each sample, over the time.
     pub(super) fn over_time(&self, of: impl Fn(usize) -> f64) -> Points {
         let points = self.points(|n| [when(self.recording, n), of(n)]);
-        thinned(points, self.pixels, Shape::OverTime)
+        thinned(points, self.pixels, self.scale, Shape::OverTime)
     }
 
     /// The same over the input.
@@ -58,7 +65,7 @@ impl<'r> Seen<'r> {
             _ => Shape::Loop,
         };
         let points = self.points(|n| [self.recording.input[n], of(n)]);
-        thinned(points, self.pixels, shape)
+        thinned(points, self.pixels, self.scale, shape)
     }
 
     /// A point for each sample. What is not a number breaks a line: no history goes on from one

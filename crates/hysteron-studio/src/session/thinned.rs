@@ -49,10 +49,18 @@ pub(super) enum Shape {
     Dots,
 }
 
-/// The points that a picture of so many pixels can show.
+/// The ends of both axes; `None` where they are those of the points.
+pub(super) type Scale = [Option<(f64, f64)>; 2];
+
+/// An axis shows this part of the way between the outermost points at least.
+const LEAST: f64 = 1e-9;
+
+/// The points that a picture of so many pixels can show at a scale: what lies far beyond it makes no
+/// pixel larger.
 pub(super) fn thinned(
     points: impl Iterator<Item = Point> + Clone,
     (width, height): (u32, u32),
+    shown: Scale,
     shape: Shape,
 ) -> Points {
     let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -64,7 +72,9 @@ pub(super) fn thinned(
     // Half a pixel is not seen.
     let pixels = [width, height].map(|pixels| f64::from(pixels.clamp(10, 8192)));
     let scale = [0, 1].map(|axis| {
-        let way = ends[axis][1] - ends[axis][0];
+        let whole = ends[axis][1] - ends[axis][0];
+        let part = shown[axis].map_or(whole, |(low, high)| high - low);
+        let way = part.clamp(LEAST * whole.max(0.0), whole.max(0.0));
         if way > 0.0 { way / pixels[axis] } else { 1.0 }
     });
     let lowest = [ends[0][0], ends[1][0]];

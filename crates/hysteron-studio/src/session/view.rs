@@ -1,6 +1,7 @@
 //! What a picture shows.
 
 use super::id::Id;
+use super::thinned::{Ends, Scale};
 use hysteron::Recording;
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +50,18 @@ pub struct View {
     pub band: bool,
     /// Width and height of the picture in pixels.
     pub pixels: (u32, u32),
+}
+
+impl View {
+    /// What its axes show, where the samples in it reach from one to the other of these ends.
+    pub(super) fn scale(&self, ends: [Option<Ends>; 2]) -> Scale {
+        let over_input = matches!(self.picture, Picture::Loop | Picture::ResidualsOverInput);
+        let area = [
+            self.area.input.filter(|_| over_input),
+            self.area.output.filter(|_| self.picture == Picture::Loop),
+        ];
+        [0, 1].map(|axis| area[axis].or(ends[axis].map(|ends| (ends.low, ends.high))))
+    }
 }
 
 /// A part of the loop. `None` for the whole of an axis.

@@ -21,6 +21,7 @@ mod recordings;
 
 mod accessibility;
 mod browser;
+mod browser_sample;
 mod browser_views;
 mod carried;
 mod hostile_sessions;

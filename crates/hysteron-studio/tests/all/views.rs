@@ -93,6 +93,57 @@ fn a_part_of_the_loop_is_the_same_samples_in_every_picture() {
     assert_eq!(seen.unwrap()["files"][0]["samples"], rows.len());
 }
 
+/// Points are thinned at the scale that is drawn: a few samples far from all others make no pixel
+/// larger, so that every sample on the scale is within a pixel of what is drawn.
+#[test]
+fn a_spike_thins_no_other_samples() {
+    let (mut session, file, fit) = fitted(0.3);
+    let mut drawn = |picture: &str, pixels: [u32; 2]| {
+        let view = json!({"request": "curves", "file": file, "fits": [fit], "picture": picture,
+            "pixels": pixels});
+        let seen = ask(&mut session, view).unwrap();
+        let line = seen["lines"].as_array().unwrap().last().unwrap().clone();
+        let values = |axis: &str| serde_json::from_value::<Vec<Option<f64>>>(line[axis].clone());
+        let (x, y) = (values("x").unwrap(), values("y").unwrap());
+        let points = x.into_iter().zip(y).filter_map(|(x, y)| Some([x?, y?]));
+        (points.collect::<Vec<[f64; 2]>>(), seen["ends"].clone())
+    };
+    for (picture, is_line) in [("loop", true), ("residuals_over_input", false)] {
+        let (all, _) = drawn(picture, [8192, 8192]);
+        let (some, ends) = drawn(picture, [400, 200]);
+        assert!(
+            ends[0]["beyond"] == true && some.len() < all.len(),
+            "{picture}"
+        );
+        let end = |axis: usize, name: &str| ends[axis][name].as_f64().unwrap();
+        let pixel = [(0, 400.0), (1, 200.0)]
+            .map(|(axis, pixels)| (end(axis, "high") - end(axis, "low")) / pixels);
+        let on_scale = |p: &&[f64; 2]| {
+            (0..2).all(|axis| (end(axis, "low")..=end(axis, "high")).contains(&p[axis]))
+        };
+        let segments: Vec<[[f64; 2]; 2]> = match is_line {
+            true => some.windows(2).map(|pair| [pair[0], pair[1]]).collect(),
+            false => some.iter().map(|point| [*point; 2]).collect(),
+        };
+        // From a point to a segment, in pixels.
+        let away = |p: &[f64; 2], [a, b]: [[f64; 2]; 2]| {
+            let from = |q: [f64; 2]| [0, 1].map(|axis| (q[axis] - a[axis]) / pixel[axis]);
+            let (way, to) = (from(b), from(*p));
+            let along = way[0] * to[0] + way[1] * to[1];
+            let share = along / way[0].hypot(way[1]).powi(2).max(f64::MIN_POSITIVE);
+            let share = share.clamp(0.0, 1.0);
+            (to[0] - share * way[0]).hypot(to[1] - share * way[1])
+        };
+        let farthest = all.iter().filter(on_scale).map(|point| {
+            let each = segments.iter().map(|segment| away(point, *segment));
+            each.fold(f64::INFINITY, f64::min)
+        });
+        // The diagonal of a pixel.
+        let farthest = farthest.fold(0.0, f64::max);
+        assert!(farthest <= 2_f64.sqrt(), "{picture}: {farthest} pixels");
+    }
+}
+
 /// A fit that needs a time is left out of the pictures of a file without one, by name; others are
 /// drawn.
 #[test]
@@ -139,6 +190,22 @@ fn a_fit_that_cannot_be_drawn_is_named_and_hides_no_other() {
             .len(),
         1
     );
+    // Its plane has no states at a sample there, and says why.
+    for (kind, shown) in [("weights", "weights"), ("states", "weights")] {
+        let plane = |fit: &Value| json!({"request": "plane", "fit": fit, "kind": kind, "at": [other, 100.0]});
+        let seen = ask(&mut session, plane(&timed)).unwrap();
+        assert_eq!(
+            (&seen["kind"], &seen["sample"], &seen["staircase"]),
+            (&json!(shown), &Value::Null, &json!([]))
+        );
+        let why = seen["left_out"]["problem"].as_str().unwrap();
+        assert!(why.contains("time"), "{why}");
+        let seen = ask(&mut session, plane(&json!(fit))).unwrap();
+        assert_eq!(
+            (&seen["kind"], &seen["left_out"]),
+            (&json!(kind), &Value::Null)
+        );
+    }
     // One that is not there at all is an error, as ever.
     let view = json!({"request": "curves", "file": file, "fits": [fit + 99], "picture": "loop",
         "pixels": [600, 400]});

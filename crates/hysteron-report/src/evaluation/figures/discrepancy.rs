@@ -1,6 +1,6 @@
 //! Figs. 12 and 14: modelled minus measured over time.
 
-use super::over_time::{plot, policies};
+use super::over_time::{plot, policies, ring_worst, worst};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::{Key, Sheet};
 use crate::draw::style::{ANTICIPATE, DISCREPANCY, MODELLED, ZERO};
@@ -33,15 +33,18 @@ fn words_of_output(view: &View<'_>) -> Option<[String; 2]> {
 }
 
 fn draw_output(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
-    sheet.legend(&[
+    let mut keys = vec![
         Key::Line(DISCREPANCY, format!("modelled − {}", view.recorded())),
         Key::Text(view.output.rmse_and_max(&view.evaluation.forward)),
-    ]);
+    ];
+    keys.extend(worst(view));
+    sheet.legend(&keys);
     let difference = difference(&view.evaluation.output_model, &view.recording.output);
     let y = view.output.renamed("discrepancy");
     let y = Axis::new(&y, around_zero(&difference));
     let panel = plot(sheet, view, y, &[(&difference, DISCREPANCY)], &[], HEIGHT);
     panel.level(&mut sheet.canvas, 0.0, &ZERO);
+    ring_worst(sheet, view, &panel, [&view.time, &difference]);
     Some(panel.end())
 }
 

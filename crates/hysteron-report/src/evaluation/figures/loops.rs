@@ -1,6 +1,6 @@
 //! Fig. 11: output over input, modelled and measured.
 
-use super::over_time::measured_and_modelled;
+use super::over_time::{measured_and_modelled, ring_worst};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::Sheet;
 use crate::draw::style::{BAND, MEASURED, MODELLED};
@@ -51,5 +51,6 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
     }
     panel.loops(&mut sheet.canvas, input, output, &MEASURED);
     panel.loops(&mut sheet.canvas, input, modelled, &MODELLED);
+    ring_worst(sheet, view, &panel, [input, output]);
     Some(panel.end())
 }

@@ -1,6 +1,6 @@
 //! Fig. 10: modelled and measured output over time.
 
-use super::over_time::{Curve, draw as draw_curves, empty, measured_and_modelled};
+use super::over_time::{Curve, draw as draw_curves, empty, measured_and_modelled, ring_worst};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::Sheet;
 use crate::draw::style::{BAND, MEASURED, MODELLED};
@@ -56,5 +56,7 @@ fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
         panel.band(&mut sheet.canvas, &view.time, band, BAND);
     }
     draw_curves(sheet, view, &panel, &curves);
+    let measured = [&view.time[..], &view.recording.output];
+    ring_worst(sheet, view, &panel, measured);
     Some(panel.end())
 }

@@ -4,7 +4,7 @@ use crate::draw::axis::{Axis, Span, time_axis};
 use crate::draw::panel::Panel;
 use crate::draw::sheet::{Key, Sheet};
 use crate::draw::stretches::{extent, stretches};
-use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, SHADE, Stroke};
+use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, POINTED, SHADE, Stroke};
 use crate::evaluation::view::View;
 use crate::panels::single;
 
@@ -20,7 +20,24 @@ pub(super) fn measured_and_modelled(view: &View<'_>) -> Vec<Key> {
     if let Some(band) = view.band() {
         keys.push(Key::Area(BAND, band.name()));
     }
+    keys.extend(worst(view));
     keys
+}
+
+/// Legend of the worst sample, where there is one.
+pub(super) fn worst(view: &View<'_>) -> Option<Key> {
+    let (_, words) = view.worst()?;
+    Some(Key::Ring(POINTED, words))
+}
+
+/// A ring around the worst sample, which is at these values.
+pub(super) fn ring_worst(sheet: &mut Sheet, view: &View<'_>, panel: &Panel, [xs, ys]: [&[f64]; 2]) {
+    let at = view
+        .worst()
+        .and_then(|(n, _)| Some([*xs.get(n)?, *ys.get(n)?]));
+    if let Some(at) = at {
+        panel.ring(&mut sheet.canvas, at, &POINTED);
+    }
 }
 
 /// Legend of the inverse's policies, and of the dead band where there is one.
