@@ -6,6 +6,7 @@
 //! and damping, the weights for the input of the ring that most likely gave the output.
 
 use crate::error::{Error, Result};
+use crate::identify::changed::few_in_time;
 use crate::identify::options::{Dynamics, FitOptions};
 use crate::identify::stages::nelder_mead::minimise;
 use crate::identify::stages::resonator::{Clock, Resonator};
@@ -88,9 +89,6 @@ pub(super) fn find(
     progress: Progress<'_>,
 ) -> Result<Option<Swinging>> {
     let asked = options.dynamics == Dynamics::Ring;
-    let Some(clock) = Clock::new(recordings) else {
-        return Ok(None);
-    };
     // The steps of a clock that is coarser than the samples would be taken for a swing.
     let stands = |time: &[f64]| time.windows(2).any(|pair| pair[1] <= pair[0]);
     let coarse = |recording: &Recording| recording.time.as_deref().is_some_and(stands);
@@ -102,13 +100,48 @@ pub(super) fn find(
         smooth: options.smooth.at_least(SMOOTH),
         ..options.clone()
     };
-    progress.tell("ring", f64::NAN)?;
-    let mut search = Search {
-        measured: recordings.iter().flat_map(|r| r.output.clone()).collect(),
-        problem: Problem::new(recordings, &options)?,
-        clock: &clock,
-        progress,
+    let looked_at = few_in_time(recordings);
+    let Some((first, report)) = judged(&looked_at, &options, asked, progress)? else {
+        return Ok(None);
     };
+    let Some(clock) = Clock::new(recordings) else {
+        return Ok(None);
+    };
+    let mut search = Search::new(recordings, &options, &clock, progress)?;
+    let still = search.sums(None)?;
+    let (constants, targets, _) = search.swung(first, None, &still)?;
+    let [frequency, damping] = constants;
+    let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
+    let is_unclear = damping >= RESONANT
+        || decay > DECAYS * clock.longest
+        || CLEAR * clock.step * frequency > 1.0;
+    if !asked && is_unclear {
+        return Ok(None);
+    }
+    let mut recordings = recordings.to_vec();
+    let mut targets = targets.into_iter();
+    for output in recordings.iter_mut().flat_map(|r| &mut r.output) {
+        *output = targets.next().unwrap_or(*output);
+    }
+    Ok(Some(Swinging {
+        constants,
+        recordings,
+        report,
+    }))
+}
+
+/// The ring to begin with, and what it predicts of blocks left out; `None` where that is not worth
+/// it, or no time passes.
+fn judged(
+    recordings: &[Recording],
+    options: &FitOptions,
+    asked: bool,
+    progress: Progress<'_>,
+) -> Result<Option<([f64; 2], Report)>> {
+    let Some(clock) = Clock::new(recordings) else {
+        return Ok(None);
+    };
+    let mut search = Search::new(recordings, options, &clock, progress)?;
     let still = search.sums(None)?;
     let Some(first) = search.first(&still, asked)? else {
         return Ok(None);
@@ -132,28 +165,7 @@ pub(super) fn find(
     let count = search.measured.len() as f64;
     let [without, with] = squares.map(|sum| 100.0 * (sum / count).sqrt() / (high - low));
     let worth = with < (1.0 - WORTH) * without;
-    if !(worth || asked) {
-        return Ok(None);
-    }
-    let (constants, targets, _) = search.swung(first, None, &still)?;
-    let [frequency, damping] = constants;
-    let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
-    let is_unclear = damping >= RESONANT
-        || decay > DECAYS * clock.longest
-        || CLEAR * clock.step * frequency > 1.0;
-    if !asked && is_unclear {
-        return Ok(None);
-    }
-    let mut recordings = recordings.to_vec();
-    let mut targets = targets.into_iter();
-    for output in recordings.iter_mut().flat_map(|r| &mut r.output) {
-        *output = targets.next().unwrap_or(*output);
-    }
-    Ok(Some(Swinging {
-        constants,
-        recordings,
-        report: Report { without, with },
-    }))
+    Ok((worth || asked).then_some((first, Report { without, with })))
 }
 
 struct Search<'a> {
@@ -163,7 +175,22 @@ struct Search<'a> {
     progress: Progress<'a>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(
+        recordings: &'a [Recording],
+        options: &'a FitOptions,
+        clock: &'a Clock,
+        progress: Progress<'a>,
+    ) -> Result<Self> {
+        progress.tell("ring", f64::NAN)?;
+        Ok(Self {
+            measured: recordings.iter().flat_map(|r| r.output.clone()).collect(),
+            problem: Problem::new(recordings, options)?,
+            clock,
+            progress,
+        })
+    }
+
     /// The outputs of the operators, fitted to the outputs of the problem at the samples kept.
     fn sums(&mut self, kept: Option<&[f64]>) -> Result<Vec<f64>> {
         self.progress.tell("ring", f64::NAN)?;
