@@ -110,7 +110,7 @@ pub(crate) fn wrong_of_both(input: &[f64], output: &[f64]) -> [Vec<usize>; 2] {
 
 /// As [`wrong`], with lines in place of these readings.
 fn replaced(
-    values: &mut Vec<f64>,
+    values: &mut [f64],
     follower: Option<&[f64]>,
     deviations: f64,
     runs: bool,

@@ -174,9 +174,9 @@ pub(super) fn few_points(fit: &FitSummary, recordings: &[Recording]) -> Option<C
 /// How often a series moves on by more than it trembles.
 fn places(values: &[f64]) -> usize {
     let tolerance = usual_tolerance(values);
-    let mut last = f64::NAN;
+    let mut last = f64::INFINITY;
     let moves = values.iter().filter(|value| {
-        let moves = !((*value - last).abs() <= tolerance);
+        let moves = (*value - last).abs() > tolerance;
         if moves {
             last = **value;
         }
