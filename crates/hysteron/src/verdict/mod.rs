@@ -246,7 +246,7 @@ impl Verdict {
         }
         if let Some(fit) = &model.fit {
             verdict.causes.extend(match was_fitted {
-                true => cause::few_points(fit, recordings),
+                true => cause::few_points(recordings),
                 false => cause::few_loops(fit, recordings),
             });
         }

@@ -409,3 +409,33 @@ fn a_lowered_grade_has_a_reason_and_no_step_asks_for_what_is_given() {
         assert!(!(verdict.has_load && asks), "seed {seed}: {next}");
     }
 }
+
+/// An input that goes from set point to set point: what is right of it is not called wrong, and a few
+/// of them are no test.
+#[test]
+fn few_set_points_are_no_promise() {
+    let mut rng = ChaCha8Rng::seed_from_u64(31);
+    let plant = model(&weights(&mut rng));
+    let range = plant.output_range();
+    let noise = 0.003 * (range.1 - range.0);
+    for (points, held) in [(30, 40), (400, 3)] {
+        let mut input = Vec::new();
+        for _ in 0..points {
+            let at = rng.random_range(20.0..80.0);
+            input.extend(std::iter::repeat_n(at, held));
+        }
+        let output = plant.simulate(&input).unwrap();
+        let noisy = |y: f64| y + noise * rng.random_range(-1.0..1.0);
+        let output = output.into_iter().map(noisy).collect();
+        let recording = Recording::new(input, output).unwrap();
+        let model = Fit::new().run(&recording).unwrap();
+        let verdict = Verdict::of_fit(&model, &recording).unwrap();
+        let is_few = |cause: &Cause| matches!(cause, Cause::FewPoints { .. });
+        let few = verdict.causes.iter().any(is_few);
+        assert_eq!(few, points == 30, "{verdict}");
+        assert_eq!(verdict.grade == Grade::Good, !few, "{verdict}");
+        let advice = hysteron::advice(&model, &[recording]).unwrap();
+        let is_cured = |one: &hysteron::Advice| one.is_cured_by_preparation();
+        assert!(!advice.iter().any(is_cured), "{advice:?}");
+    }
+}

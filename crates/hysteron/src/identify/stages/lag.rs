@@ -17,7 +17,7 @@ const SHORT_BLOCKS: usize = 24;
 
 /// One of these lags, in sampling steps, has to reduce the error on what is fitted by this share, or
 /// none is looked for.
-const HINTS: [f64; 2] = [1.0, LONG];
+const HINTS: [f64; 3] = [1.0, LONG, 32.0];
 const HINT: f64 = 0.05;
 
 /// A lag of more sampling steps has to take this share of the error. It smooths whatever the model
@@ -45,8 +45,11 @@ pub(super) fn find(
     let mut search = Search::new(&right, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
     let bare = search.creep(0, 0.0)?;
-    let [short, long] = HINTS.map(|steps| search.creep(0, steps * search.step));
-    if short?.1.min(long?.1) > (1.0 - HINT) * bare.1 {
+    let mut hints = HINTS
+        .iter()
+        .map(|steps| search.creep(0, steps * search.step));
+    let helps = |hint: Result<(After, f64)>| hint.is_ok_and(|hint| hint.1 <= (1.0 - HINT) * bare.1);
+    if !hints.any(helps) {
         return Ok(None);
     }
     let Some(mut best) = search.lag_alone()? else {
