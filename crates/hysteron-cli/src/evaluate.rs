@@ -153,11 +153,8 @@ fn to_text(evaluation: &Evaluation, recordings: &[Recording]) -> String {
              recording, and the errors say little\n{result}"
         ),
         clipped => {
-            result
-                + &format!(
-                    "\n{} outside the plane",
-                    hysteron::counted(clipped, "input")
-                )
+            let inputs = hysteron::counted(clipped, "input");
+            format!("{result}\n{inputs} outside the plane")
         }
     }
 }

@@ -101,8 +101,8 @@ fn section<V>(section: &Section<V>, view: &V, drawn: &[Drawn]) -> Markup {
     }
 }
 
-/// A figure, with the name of its file: it has no other number on the page. Its width is in pixels: all figures of a page have one
-/// scale, and so one size of text.
+/// A figure, with the name of its file: it has no other number on the page. Its width is in pixels:
+/// all figures of a page have one scale, and so one size of text.
 fn picture(figure: &Drawn) -> Markup {
     html! {
         figure id=(figure.stem) style={"--width:" (figure.width)} {

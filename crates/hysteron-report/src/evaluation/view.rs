@@ -82,17 +82,11 @@ impl<'a> View<'a> {
     /// The sample at which the model errs most, as the verdict tells it, and how a legend says it.
     pub(crate) fn worst(&self) -> Option<(usize, String)> {
         let worst = self.verdict.as_ref()?.worst?;
-        let (first, recording) = match worst.recording.checked_sub(1) {
-            None => (0, String::new()),
-            Some(n) => (*self.begins.get(n)?, format!("recording {}, ", n + 2)),
+        let first = match worst.recording.checked_sub(1) {
+            None => 0,
+            Some(n) => *self.begins.get(n)?,
         };
-        let place = worst.place.map(|place| format!(" ({place})"));
-        let words = format!(
-            "worst: {recording}sample {}{}",
-            worst.sample + 1,
-            place.unwrap_or_default()
-        );
-        Some((first + worst.sample, words))
+        Some((first + worst.sample, format!("worst: {}", worst.named())))
     }
 
     pub(crate) fn inverse(&self) -> Option<&'a InverseEvaluation> {

@@ -1,7 +1,7 @@
 //! What axe-core finds on the page: contrast, names of what can be pressed, order of headings.
 #![cfg(feature = "server")]
 
-use crate::browser::play;
+use crate::browser::show_play;
 use crate::chromium::{Chromium, Tab};
 use crate::place::Way;
 use crate::recordings::skip::skipped;
@@ -39,11 +39,7 @@ fn everybody_can_use_the_page() {
     };
     browser.value(&tab, &format!("{axe}; 0"));
     assert_eq!(violations(&mut browser, &tab), json!([]), "empty");
-    browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(
-        &tab,
-        "document.querySelector('#plot-loop .scatterlayer path')",
-    );
+    show_play(&mut browser, &tab);
     browser.value(&tab, "document.querySelector('[name=levels]').value = '12'");
     browser.value(&tab, "document.querySelector('#begin').click()");
     browser.wait(&tab, "document.querySelector('#fits .badge')");

@@ -131,6 +131,15 @@ fn a_recording_with_time_goes_the_whole_way(way: Way) {
     whole_way(way, "play.csv", &play(), "play");
 }
 
+/// Drops [`play`] onto the page, and waits for its picture.
+pub fn show_play(browser: &mut Chromium, tab: &Tab) {
+    browser.drop_file(tab, "play.csv", &play());
+    browser.wait(
+        tab,
+        "document.querySelector('#plot-loop .scatterlayer path')",
+    );
+}
+
 /// Loops of a play in a recording as the demo writes it.
 pub fn play() -> String {
     let mut text = "time [s],temperature [degC],displacement [mm],simulated\n".to_owned();
@@ -268,11 +277,7 @@ fn a_session_that_was_taken_home_goes_on(way: Way) {
     let Some((mut browser, studio, tab)) = way.open(1 << 26, (900, 700)) else {
         return;
     };
-    browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(
-        &tab,
-        "document.querySelector('#plot-loop .scatterlayer path')",
-    );
+    show_play(&mut browser, &tab);
     fit(&mut browser, &tab);
     let seen = browser.value(&tab, OVERVIEW);
     let taken =
@@ -489,11 +494,7 @@ fn a_page_of_a_folder_that_is_loaded_again_goes_on() {
     let Some((mut browser, studio, tab)) = Way::Folder.open(1 << 26, (900, 700)) else {
         return;
     };
-    browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(
-        &tab,
-        "document.querySelector('#plot-loop .scatterlayer path')",
-    );
+    show_play(&mut browser, &tab);
     fit(&mut browser, &tab);
     let seen = browser.value(&tab, OVERVIEW);
     let again = "{ window.before = true; location.reload(); }";

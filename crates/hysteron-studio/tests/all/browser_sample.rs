@@ -1,7 +1,7 @@
 //! The sample pointed at, on the page in a real browser.
 #![cfg(feature = "server")]
 
-use crate::browser::play;
+use crate::browser::{play, show_play};
 use crate::chromium::{Chromium, Tab};
 use crate::place::Way;
 
@@ -30,11 +30,7 @@ fn a_fit_that_is_left_out_is_no_error_of_the_page() {
     let Some((mut browser, studio, tab)) = Way::Server.open(1 << 28, (1280, 900)) else {
         return;
     };
-    browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(
-        &tab,
-        "document.querySelector('#plot-loop .scatterlayer path')",
-    );
+    show_play(&mut browser, &tab);
     fit(&mut browser, &tab, "first-order", "nothing");
     let staircase =
         "document.querySelector('#plane-text').textContent.includes('staircase at row')";
@@ -86,11 +82,7 @@ fn the_worst_sample_comes_into_view() {
     let Some((mut browser, studio, tab)) = Way::Server.open(1 << 28, (390, 844)) else {
         return;
     };
-    browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(
-        &tab,
-        "document.querySelector('#plot-loop .scatterlayer path')",
-    );
+    show_play(&mut browser, &tab);
     fit(&mut browser, &tab, "", "usual");
     let begin = "{ scrollTo(0, 0); document.querySelector('[data-key^=worst]').focus({preventScroll: true}); }";
     browser.value(&tab, begin);
@@ -157,11 +149,7 @@ fn legends_stay_above_the_curves_in_every_width() {
     let Some((mut browser, studio, tab)) = Way::Server.open(1 << 28, (1280, 900)) else {
         return;
     };
-    browser.drop_file(&tab, "play.csv", &play());
-    browser.wait(
-        &tab,
-        "document.querySelector('#plot-loop .scatterlayer path')",
-    );
+    show_play(&mut browser, &tab);
     browser.value(
         &tab,
         "document.querySelector('[name=bootstrap]').value = '20'",

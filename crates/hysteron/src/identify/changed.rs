@@ -100,6 +100,23 @@ mod tests {
     use crate::series::range;
 
     #[test]
+    fn a_search_in_time_sees_a_beginning_that_turns_or_the_whole_length() {
+        let of = |samples: usize, rate: f64| {
+            let input: Vec<f64> = (0..samples).map(|n| (n as f64 * rate).sin()).collect();
+            let output = (0..samples).map(|n| n as f64).collect();
+            Recording::new(input, output).unwrap()
+        };
+        assert!(matches!(few_in_time(&[of(ENOUGH, 0.1)]), Cow::Borrowed(_)));
+        let quick = [of(3 * ENOUGH, 0.1)];
+        let found = few_in_time(&quick);
+        assert_eq!(found[0].output, quick[0].output[..ENOUGH]);
+        let slow = [of(3 * ENOUGH, 1e-4)];
+        let found = few_in_time(&slow);
+        assert!((ENOUGH..=3 * ENOUGH).contains(&found[0].len()));
+        assert!(range(&found[0].output).1 > 2.9 * ENOUGH as f64);
+    }
+
+    #[test]
     fn choices_see_the_extremes_of_long_recordings_and_all_of_short_ones() {
         let waves = |n: usize| (n as f64 * 0.37).sin() * (n as f64 * 0.001).cos();
         let of = |samples: usize| {

@@ -115,8 +115,11 @@ pub(super) fn find(
     let of = |shift: usize| tried.iter().find(|(samples, _)| *samples == shift);
     let [at_once, late] = [of(0), of(best)].map(|found| found.map_or(f64::INFINITY, |(_, e)| *e));
     let is_longest = tried.iter().all(|(samples, _)| *samples <= best);
+    if is_longest || !less(late, at_once) {
+        return Ok(Delay::NONE);
+    }
     let sign = squares(best, &coarse, from)?.1;
-    if is_longest || !less(late, at_once) || !goes_on(&looked_at, sign, best) {
+    if !goes_on(&looked_at, sign, best) {
         return Ok(Delay::NONE);
     }
     // What a finer grid resolves is a loop, not a dead time.

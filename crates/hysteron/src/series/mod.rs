@@ -1,10 +1,11 @@
 //! Functions over slices of numbers, without any model.
 //!
 //! `turning` finds turning points and the direction of each sample. `filter` is the low-pass
-//! filter. `errors` compares two series. `noise` estimates white noise, and
-//! `spikes` finds isolated readings, `jumps` jumps and bursts of wrong readings, `lost` all readings
-//! that are wrong, `frozen` a channel that stands still, and `repeated` rows that come twice. `spread` gives range, mean and standard
-//! deviation. `runs` keeps values that change seldom.
+//! filter. `errors` compares two series. `noise` estimates white noise, and `coarse` tells series
+//! that jump from reading to reading. `spikes` finds isolated readings, `jumps` jumps and bursts of
+//! wrong readings, `lost` all readings that are wrong, `frozen` a channel that stands still, and
+//! `repeated` rows that come twice. `spread` gives range, mean and standard deviation. `runs` keeps
+//! values that change seldom.
 
 pub(crate) mod coarse;
 mod errors;

@@ -50,6 +50,23 @@ pub struct Worst {
     pub modelled: f64,
 }
 
+impl Worst {
+    /// Which sample it is, in words: `recording 2, sample 124 (line 130)`, counted from 1.
+    #[must_use]
+    pub fn named(&self) -> String {
+        let recording = match self.recording {
+            0 => String::new(),
+            number => format!("recording {}, ", number + 1),
+        };
+        let place = self.place.map(|place| format!(" ({place})"));
+        format!(
+            "{recording}sample {}{}",
+            self.sample + 1,
+            place.unwrap_or_default()
+        )
+    }
+}
+
 /// Whether a model is good enough, and if not, why.
 ///
 /// Errors are in percent of the measured range of the output, of the input for the inverse.

@@ -177,18 +177,12 @@ impl Verdict {
 
     fn worst(&self) -> Option<String> {
         let worst = self.worst?;
-        let recording = match worst.recording {
-            0 => String::new(),
-            number => format!("recording {}, ", number + 1),
-        };
         let time = worst
             .time
             .map(|time| format!(" at {} s", (time * 1e6).round() / 1e6));
-        let place = worst.place.map(|place| format!(" ({place})"));
         Some(format!(
-            "{recording}sample {}{}{}: {} {}, {} {} measured, {} modelled",
-            worst.sample + 1,
-            place.unwrap_or_default(),
+            "{}{}: {} {}, {} {} measured, {} modelled",
+            worst.named(),
             time.unwrap_or_default(),
             self.input.name,
             self.input.text(worst.input),

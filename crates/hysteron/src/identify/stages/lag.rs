@@ -45,11 +45,11 @@ pub(super) fn find(
     let mut search = Search::new(&right, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
     let bare = search.creep(0, 0.0)?;
-    let mut hints = HINTS
-        .iter()
-        .map(|steps| search.creep(0, steps * search.step));
-    let helps = |hint: Result<(After, f64)>| hint.is_ok_and(|hint| hint.1 <= (1.0 - HINT) * bare.1);
-    if !hints.any(helps) {
+    let mut helps = false;
+    for steps in HINTS {
+        helps = helps || search.creep(0, steps * search.step)?.1 <= (1.0 - HINT) * bare.1;
+    }
+    if !helps {
         return Ok(None);
     }
     let Some(mut best) = search.lag_alone()? else {

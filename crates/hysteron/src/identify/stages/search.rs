@@ -105,7 +105,7 @@ pub(super) struct Search<'a> {
     pub(super) noise: f64,
     /// Sampling step, and the time that the longest recording takes.
     pub(super) step: f64,
-    pub(super) longest: f64,
+    longest: f64,
 }
 
 impl<'a> Search<'a> {
