@@ -59,7 +59,10 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             clipped = inputs;
         }
     }
-    let verdict = Verdict::of_fit(&model, &recordings)?;
+    let verdict = match &what {
+        Some(what) => Verdict::of_fit_holding_out(&model, &recordings, what)?,
+        None => Verdict::of_fit(&model, &recordings)?,
+    };
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => {

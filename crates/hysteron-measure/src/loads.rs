@@ -100,7 +100,8 @@ fn chosen(model: &Model) -> String {
             other => other.to_string(),
         };
         match name.as_str() {
-            "weights" => format!("weights, order {}", of("degree")),
+            "weights" => format!("shift, weights of order {}", of("degree")),
+            "alone" => format!("weights of order {}", of("degree")),
             "gain" => format!("shift, {}", of("stroke")),
             name => format!("{name}, {}", of("stroke")),
         }

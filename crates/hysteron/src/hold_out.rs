@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::identify::kept::tell_errors;
 use crate::identify::{Advice, Fit};
 use crate::model::{Model, Start};
-use crate::recording::{HoldOut, Recording, Split, split_each};
+use crate::recording::{HoldOut, Recording, Split, split_each, split_ends};
 use crate::remedy::{Remedy, Setting};
 use crate::rivals::{Rival, RivalKind};
 use crate::series::Errors;
@@ -20,7 +20,8 @@ pub struct HeldOut {
     pub model: Errors,
     /// Errors of simple predictors, fitted to the same samples as the model.
     pub rivals: Vec<RivalErrors>,
-    /// Whether neither a ring nor a lag was looked for, because more than the end of a recording was held out.
+    /// Whether neither a dead time, a ring nor a lag was looked for, because more than the end of a
+    /// recording was held out.
     pub without_dynamics: bool,
 }
 
@@ -90,6 +91,10 @@ impl HeldOut {
 /// The model runs over the whole input, and is compared where the output was held out. A percentage
 /// is of the range of the whole output.
 ///
+/// A model that depends on time needs every sample before a row. So [`HoldOut::Branches`] holds out
+/// the last branches where such a stage is asked for; and where one is looked for, if these are like
+/// the rest: within its range of inputs, and over half of it. Else they are spread.
+///
 /// If rows at the beginning or in the middle are held out, the state of the operators after them is
 /// not known. Then the start is [`Start::Unknown`], whatever `fit` says.
 ///
@@ -111,9 +116,8 @@ impl HeldOut {
 ///
 /// # Errors
 /// - As [`Fit::run`] and [`Recording::split`].
-/// - [`Error::Fit`] for a stage that depends on time, asked for or looked for, if anything else is
-///   held out than rows at the end, because such a model needs every sample.
-///   [`crate::Dynamics::Auto`] then looks for nothing.
+/// - [`Error::Fit`] for a stage that depends on time and is asked for, if rows are held out that are
+///   not at the end. [`crate::Dynamics::Auto`] then looks for nothing.
 pub fn fit_holding_out(
     fit: &Fit<'_>,
     recordings: &(impl AsRef<[Recording]> + ?Sized),
@@ -139,7 +143,17 @@ pub fn fit_holding_out(
         report.record_in(&mut model);
         return Ok((model, report));
     }
-    let splits = split_each(recordings, what)?;
+    let has_dynamics = |one: &Recording| one.time.is_some() && one.load.is_none();
+    let looks_for_dynamics = fit.looks_for_dynamics() && recordings.iter().all(has_dynamics);
+    // What depends on time needs every sample before a row, so the last branches are held out.
+    let ends = match looks_for_dynamics || fit.asks_for_time() {
+        true => split_ends(recordings, what)?,
+        false => None,
+    };
+    let splits = match ends {
+        Some((ends, is_alike)) if is_alike || fit.asks_for_time() => ends,
+        _ => split_each(recordings, what)?,
+    };
     let training: Vec<Recording> = splits.iter().flat_map(|s| s.training.clone()).collect();
     let begins_inside = splits.iter().any(|split| split.begins_inside);
     let mut fit = match begins_inside {
@@ -147,16 +161,14 @@ pub fn fit_holding_out(
         false => fit.clone(),
     };
     let ends_alone = splits.iter().all(|split| split.is_head);
-    let has_dynamics = |one: &Recording| one.time.is_some() && one.load.is_none();
-    let without_dynamics =
-        !ends_alone && fit.looks_for_dynamics() && recordings.iter().all(has_dynamics);
+    let without_dynamics = !ends_alone && looks_for_dynamics;
     if !ends_alone {
-        // A ring that nobody asked for could not be judged.
+        // What nobody asked for could not be judged.
         fit = fit.without_auto_dynamics();
         if fit.asks_for_time() {
             return Err(Error::Fit(
                 "a model that depends on time needs every sample before a row: hold out rows at \
-                 the end, or another recording"
+                 the end, a share of the branches, or another recording"
                     .into(),
             ));
         }

@@ -81,7 +81,7 @@ impl<'a> View<'a> {
 
     /// The sample at which the model errs most, as the verdict tells it, and how a legend says it.
     pub(crate) fn worst(&self) -> Option<(usize, String)> {
-        let worst = self.verdict.as_ref()?.worst?;
+        let worst = self.verdict.as_ref()?.worst.as_ref()?;
         let first = match worst.recording.checked_sub(1) {
             None => 0,
             Some(n) => *self.begins.get(n)?,

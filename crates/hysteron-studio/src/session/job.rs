@@ -150,7 +150,10 @@ impl Job {
                 (model, Some(held_out))
             }
         };
-        let verdict = Verdict::of_fit(&model, &self.recordings)?;
+        let verdict = match &self.hold_out {
+            Some(what) => Verdict::of_fit_holding_out(&model, &self.recordings, what)?,
+            None => Verdict::of_fit(&model, &self.recordings)?,
+        };
         let inverse = verdict.inverse;
         let verdict = verdict.lines(spelt);
         let verdict = verdict

@@ -67,7 +67,8 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
-    /// Neither a ring nor a lag was looked for, because more than the end of a recording was held out.
+    /// Neither a dead time, a ring nor a lag was looked for, because more than the end of a recording
+    /// was held out.
     NoDynamics,
     /// The first input does not determine the state of some operators, and all of these were taken
     /// as off.
@@ -136,8 +137,8 @@ impl fmt::Display for Advice {
                 )
             }
             Self::NoDynamics => f.write_str(
-                "neither a ring nor a lag was looked for: they need every sample before a row, and \
-                 more than the end was held out",
+                "neither a dead time, a ring nor a lag was looked for: they need every sample before a \
+                 row, and more than the end was held out",
             ),
             Self::OpenStart { operators } => write!(
                 f,

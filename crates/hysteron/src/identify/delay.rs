@@ -8,7 +8,7 @@
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::model::{Delay, Model, Sign, Smooth};
+use crate::model::{Delay, Sign, Smooth};
 use crate::progress::Progress;
 use crate::recording::{Recording, gaps};
 use crate::series::{Turning, mean_and_deviation, usual_tolerance};
@@ -159,21 +159,6 @@ fn further(error: impl Fn(usize) -> Result<(usize, f64)>) -> Result<Vec<(usize, 
     Ok(tried)
 }
 
-/// Whether a model with a dead time predicts what was left out clearly better than the one without,
-/// each with the levels and stages that it chose. Where nothing was left out, what was fitted tells:
-/// a dead time adds no weights to follow it with.
-pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
-    let (Some(with), Some(without)) = (&with.fit, &without.fit) else {
-        return false;
-    };
-    match (&with.validation, &without.validation) {
-        (Some(with), Some(without)) if with.criterion == without.criterion => with
-            .criterion
-            .is_worth(with.value(), without.value(), WORTH),
-        _ => with.rmse < (1.0 - WORTH) * without.rmse,
-    }
-}
-
 /// Whether the output goes on for so many `samples` after its input has turned, on the mean over
 /// all reversals and beyond chance. Hysteresis alone turns the output at once, or holds it. So this
 /// tells a dead time from a loop that is as much wider, which at one rate predicts the same.
@@ -231,6 +216,7 @@ fn squares_left_out(
 mod tests {
     use super::*;
     use crate::identify::{Fit, Spacing};
+    use crate::model::Model;
     use hysteron_core::{Operator, Plane};
 
     /// Swings of another size each time, and what a model answers `late` samples later. A slow swing

@@ -1,8 +1,8 @@
 //! [`Fit`], the entry point of identification: options, choices left to the data, progress.
 
 use crate::error::Result;
-use crate::identify::choose::Open;
 use crate::identify::choose::start::{at_rest, usual_start};
+use crate::identify::choose::{Open, is_worth};
 use crate::identify::delay;
 use crate::identify::doubt::sessions::widen;
 use crate::identify::kept;
@@ -258,20 +258,25 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Whether a stage that depends on time is asked for, or looked for.
+    /// Whether a dead time or a stage that depends on time is asked for.
     pub(crate) fn asks_for_time(&self) -> bool {
-        self.options.needs_time() || self.thermal != Thermal::None
+        let is_late = matches!(self.options.delay, Choice::Fixed(samples) if samples > 0);
+        is_late || self.options.needs_time() || self.thermal != Thermal::None
     }
 
-    /// Whether a ring or a lag is looked for in recordings with time and without a load.
+    /// Whether a dead time, a ring or a lag that nobody asked for is looked for in recordings with
+    /// time and without a load.
     pub(crate) fn looks_for_dynamics(&self) -> bool {
-        self.options.looks_for_ring()
+        self.options.looks_for_ring() || self.options.delay == Choice::Auto
     }
 
-    /// Looks for no dynamics that were not asked for.
+    /// Looks for nothing of them.
     pub(crate) fn without_auto_dynamics(mut self) -> Self {
         if self.options.dynamics == Dynamics::Auto {
             self.options.dynamics = Dynamics::Off;
+        }
+        if self.options.delay == Choice::Auto {
+            self.options.delay = Choice::Fixed(0);
         }
         self
     }
@@ -389,14 +394,33 @@ impl<'a> Fit<'a> {
             return Ok((at_once, delay));
         }
         let late = self.acting(&delay.of_recordings(recordings))?;
-        Ok(match delay::is_worth(&late, &at_once) {
+        Ok(match is_worth(&late, &at_once) {
             true => (late, delay),
             false => (at_once, Delay::NONE),
         })
     }
 
-    /// The model of recordings whose inputs act at once, but for the repeats.
+    /// The model of recordings whose inputs act at once, but for the repeats. A ring that nobody asked
+    /// for is taken where the whole model is better with it than without it: few paths that are left
+    /// out can be predicted better by a ring than by operators that are not determined.
     fn acting(&self, recordings: &[Recording]) -> Result<Model> {
+        let found = self.staged(recordings, true)?;
+        let rings = found
+            .fit
+            .as_ref()
+            .is_some_and(|fit| fit.other.contains_key(stages::RING));
+        if !rings || self.options.dynamics == Dynamics::Ring {
+            return Ok(found);
+        }
+        let still = self.staged(recordings, false)?;
+        Ok(match is_worth(&found, &still) {
+            true => found,
+            false => still,
+        })
+    }
+
+    /// The model with its stages, among them a ring if that may be.
+    fn staged(&self, recordings: &[Recording], rings: bool) -> Result<Model> {
         let mut options = self.options.clone();
         if options.dynamics == Dynamics::Lag && options.lag == Choice::Fixed(0.0) {
             options.lag = Choice::Auto;
@@ -440,6 +464,7 @@ impl<'a> Fit<'a> {
                     auto_bootstrap: self.auto_bootstrap,
                     shape: self.shape,
                     tested: self.tested,
+                    rings,
                     outliers: &outliers,
                 };
                 stages::fit(&seen, &options, asked, self.progress)?
@@ -451,6 +476,9 @@ impl<'a> Fit<'a> {
         let mut model = kept::with_start(model, &seen, &options)?;
         kept::tell_errors(&mut model, recordings, |_| true)?;
         kept::tell_left_out(&mut model);
+        if self.prior.is_none() {
+            kept::tell_different(&mut model, recordings);
+        }
         Ok(model)
     }
 }

@@ -7,7 +7,7 @@ use crate::identify::options::FitOptions;
 use crate::identify::rest::after;
 use crate::model::{Model, Start};
 use crate::recording::Recording;
-use crate::series::Errors;
+use crate::series::{Errors, different_branches};
 use serde_json::json;
 use std::collections::HashSet;
 
@@ -77,6 +77,17 @@ fn squares(model: &Model, recordings: &[Recording]) -> Result<f64> {
         sum += history::squares(model, model.start(), recording)?;
     }
     Ok(sum)
+}
+
+/// The entry of a fit's record with the number of branches that are unlike each other.
+pub(crate) const DIFFERENT: &str = "different_branches";
+
+/// Writes how many branches of the recordings are unlike each other into the record of the fit.
+pub(super) fn tell_different(model: &mut Model, recordings: &[Recording]) {
+    if let Some(fit) = &mut model.fit {
+        let count = different_branches(recordings.iter().map(|one| &one.input[..]));
+        fit.other.insert(DIFFERENT.into(), count.into());
+    }
 }
 
 /// Writes the errors from the start that the model keeps into the record of its fit, over those of

@@ -21,8 +21,8 @@ pub(crate) use positions::Positions;
 #[cfg(feature = "data")]
 pub(crate) use positions::RUN;
 pub use rows::Rows;
-pub(crate) use split::split_each;
 pub use split::{HoldOut, Split};
+pub(crate) use split::{split_each, split_ends};
 pub(crate) use units::Measures;
 
 use crate::error::{Error, Place, Result};

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::recording::Recording;
-use crate::series::{Runs, branch_spans, usual_tolerance};
+use crate::series::{Runs, branch_spans, range, usual_tolerance};
 use std::ops::{Range, RangeInclusive};
 use std::str::FromStr;
 
@@ -12,6 +12,10 @@ const MOST: f64 = 1.0 / 3.0;
 
 /// Branches with fewer samples than this are not held out.
 const SHORTEST: usize = 3;
+
+/// An end stands for the rest where its input moves over this share of the whole range at least. The
+/// last loops of an input that dies down would be easier than most.
+const ALIKE: f64 = 0.5;
 
 /// What takes no part in a fit, to test it.
 ///
@@ -30,7 +34,9 @@ const SHORTEST: usize = 3;
 #[derive(Debug, Clone, PartialEq)]
 pub enum HoldOut {
     /// This share of the branches, above 0 and up to a third. They are spread over the recording,
-    /// in turn rising and falling. The first branch is not among them.
+    /// in turn rising and falling. The first branch is not among them. For a model that depends on
+    /// time they are the last ones, because such a model needs every sample before a row; see
+    /// [`crate::fit_holding_out`].
     Branches(f64),
     /// The rows of these spans, counted from 1, through all recordings one after the other.
     Rows(Vec<RangeInclusive<usize>>),
@@ -201,7 +207,8 @@ impl Recording {
         }
     }
 
-    fn split_branches(&self, share: f64) -> Result<Split> {
+    /// The branches that can be held out, among `all`.
+    fn branches(&self, share: f64) -> Result<(Vec<Range<usize>>, Vec<usize>)> {
         if !(share > 0.0 && share <= MOST + 1e-9) {
             return Err(Error::Fit(format!(
                 "{} % of the branches cannot be held out: take more than 0 and up to 33 %",
@@ -220,6 +227,11 @@ impl Recording {
                 all.len()
             )));
         }
+        Ok((all, can_be))
+    }
+
+    fn split_branches(&self, share: f64) -> Result<Split> {
+        let (all, can_be) = self.branches(share)?;
         let mut held_out = vec![false; self.len()];
         for b in spread(&can_be, share, all.len()) {
             let last = b + 1 == all.len();
@@ -233,6 +245,23 @@ impl Recording {
             begins_inside: false,
             held_out,
         })
+    }
+
+    /// Holds the last branches out, so that the rest is the recording's beginning. Returns also
+    /// whether they are like the rest: their input stays within its range, and moves over a good part
+    /// of it.
+    fn split_last_branches(&self, share: f64) -> Result<(Split, bool)> {
+        let (all, can_be) = self.branches(share)?;
+        let count = ((share * all.len() as f64).round() as usize).max(1);
+        let last = can_be.iter().rev().take(count).last();
+        let first = last.map_or(self.len(), |b| all[*b].start);
+        let (low, high) = range(&self.input[..first]);
+        let (from, to) = range(&self.input[first..]);
+        let slight = usual_tolerance(&self.input);
+        let is_alike =
+            from >= low - slight && to <= high + slight && to - from >= ALIKE * (high - low);
+        let held_out = (0..self.len()).map(|n| n >= first).collect();
+        Ok((self.parted(held_out), is_alike))
     }
 
     /// The parts on both sides of what is held out.
@@ -264,6 +293,21 @@ pub(crate) fn split_each(recordings: &[Recording], what: &HoldOut) -> Result<Vec
     let mut held_out = marked(rows, lengths.sum())?.into_iter();
     let parted = |one: &Recording| one.parted(held_out.by_ref().take(one.len()).collect());
     Ok(recordings.iter().map(parted).collect())
+}
+
+/// The last of the branches of each recording that [`HoldOut::Branches`] holds out, and whether they
+/// are like the rest in each; `None` where something else is held out.
+pub(crate) fn split_ends(
+    recordings: &[Recording],
+    what: &HoldOut,
+) -> Result<Option<(Vec<Split>, bool)>> {
+    let Some(HoldOut::Branches(share)) = what.part() else {
+        return Ok(None);
+    };
+    recordings.iter().try_for_each(Recording::check)?;
+    let ends = recordings.iter().map(|one| one.split_last_branches(*share));
+    let (splits, alike): (Vec<_>, Vec<_>) = ends.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    Ok(Some((splits, alike.into_iter().all(|is_alike| is_alike))))
 }
 
 /// Which of so many rows are in these spans.

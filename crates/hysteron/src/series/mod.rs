@@ -30,4 +30,4 @@ pub(crate) use runs::Runs;
 pub use spread::{fair_range, mean_and_deviation, range};
 pub(crate) use spread::{fair_range_of_all, range_of_all};
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};
-pub(crate) use turning::{branch_spans, clear_branches};
+pub(crate) use turning::{branch_spans, clear_branch_spans, clear_branches, different_branches};

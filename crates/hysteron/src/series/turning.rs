@@ -119,11 +119,36 @@ pub(crate) fn branch_spans(series: &[f64], tolerance: f64) -> impl Iterator<Item
 /// A clear reversal is larger than this share of the usual range.
 const CLEAR: f64 = 0.05;
 
-/// The number of branches between clear reversals; at least one.
-pub(crate) fn clear_branches(series: &[f64]) -> usize {
+/// The branches between clear reversals.
+pub(crate) fn clear_branch_spans(series: &[f64]) -> impl Iterator<Item = Range<usize>> {
     branch_spans(series, CLEAR * usual_span(series))
-        .count()
-        .max(1)
+}
+
+/// Their number; at least one.
+pub(crate) fn clear_branches(series: &[f64]) -> usize {
+    clear_branch_spans(series).count().max(1)
+}
+
+/// The number of branches between clear reversals that are unlike each other: that begin or end at
+/// places further apart than a clear reversal. At least one.
+pub(crate) fn different_branches<'a>(all: impl IntoIterator<Item = &'a [f64]>) -> usize {
+    let all: Vec<&[f64]> = all.into_iter().collect();
+    let clear = CLEAR * all.iter().map(|one| usual_span(one)).fold(0.0, f64::max);
+    let mut known: Vec<(f64, f64)> = Vec::new();
+    for series in all {
+        for samples in branch_spans(series, clear) {
+            let (from, to) = (
+                series[samples.start.saturating_sub(1)],
+                series[samples.end - 1],
+            );
+            let is_alike =
+                |(a, b): &(f64, f64)| (a - from).abs() <= clear && (b - to).abs() <= clear;
+            if !known.iter().any(is_alike) {
+                known.push((from, to));
+            }
+        }
+    }
+    known.len().max(1)
 }
 
 /// The indices of the samples that hysteresis operators remember at the end of a series, ascending.

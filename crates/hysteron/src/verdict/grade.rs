@@ -12,8 +12,8 @@ pub(super) const USABLE: f64 = 5.0;
 /// What a model is good for.
 ///
 /// The error counts, in percent of the range of the output, on data that the model was not fitted
-/// to. One step less where a simple predictor errs less, at most `Usable` where no more than two loops
-/// were recorded, and `Poor` where a fifth of the inputs is outside the plane or the output does not
+/// to. One step less where a simple predictor errs less, at most `Usable` where few branches or points
+/// were recorded that are unlike each other, and `Poor` where a fifth of the inputs is outside the plane or the output does not
 /// move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]

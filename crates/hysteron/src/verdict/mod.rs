@@ -3,6 +3,7 @@
 //! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for;
 //! `tested` reads from the record of a fit what it was tested on; `parts` tells what an error
 //! consists of, `readings` which of it is in readings that are wrong, and `cause` what is behind it;
+//! `speed` tells whether more than one was recorded;
 //! `words` says all of it in sentences. `serial` writes it.
 
 mod cause;
@@ -10,6 +11,7 @@ mod grade;
 mod parts;
 mod readings;
 mod serial;
+mod speed;
 mod tested;
 mod words;
 
@@ -19,20 +21,24 @@ pub use parts::{ErrorPart, PartKind, error_parts};
 
 use crate::error::{Place, Result};
 use crate::evaluate::{Evaluation, evaluate_from};
-use crate::forward::Forward;
+use crate::forward::{Forward, forward};
+use crate::hold_out::held_out;
 use crate::model::{Model, Outlier, Start};
-use crate::recording::{Quantity, Recording, no_recordings};
+use crate::recording::{HoldOut, Quantity, Recording, no_recordings};
 use crate::rivals::{Rival, RivalKind, SMALL, wins};
 use crate::series::Errors;
 use crate::series::coarse::hides_noise;
 use crate::series::noise::noise;
 use grade::{GOOD, OF_NOISE, USABLE};
 use serde::Serialize;
-use tested::{Tested, on_others};
+use std::borrow::Cow;
+use tested::{Tested, best_of, on_others};
 
 /// The sample with the largest error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Worst {
+    /// The file of a recording that was held out; `None` in what was fitted or evaluated.
+    pub file: Option<String>,
     /// Index of the recording, from 0.
     pub recording: usize,
     /// Index of the sample in it, from 0.
@@ -54,9 +60,10 @@ impl Worst {
     /// Which sample it is, in words: `recording 2, sample 124 (line 130)`, counted from 1.
     #[must_use]
     pub fn named(&self) -> String {
-        let recording = match self.recording {
-            0 => String::new(),
-            number => format!("recording {}, ", number + 1),
+        let recording = match (&self.file, self.recording) {
+            (Some(file), _) => format!("{file}, "),
+            (None, 0) => String::new(),
+            (None, number) => format!("recording {}, ", number + 1),
         };
         let place = self.place.map(|place| format!(" ({place})"));
         format!(
@@ -109,6 +116,8 @@ pub struct Verdict {
     pub has_time: bool,
     /// Whether the recordings have a load.
     pub has_load: bool,
+    /// The speed of the input per second, if all of the recordings was made at about the same.
+    pub one_speed: Option<f64>,
     /// The input.
     pub input: Quantity,
     /// The output.
@@ -150,6 +159,7 @@ impl Verdict {
             worst: None,
             has_time: false,
             has_load: model.load.is_some(),
+            one_speed: None,
             input: model.input.clone(),
             output: model.output.clone(),
         })
@@ -161,21 +171,41 @@ impl Verdict {
     /// # Errors
     /// As [`crate::evaluate`].
     pub fn of_fit(model: &Model, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Self> {
-        let recordings = recordings.as_ref();
-        let samples: usize = recordings.iter().map(Recording::len).sum();
-        let first = recordings.first().ok_or_else(no_recordings)?;
-        let shortened;
-        let looked_at = match samples > TESTED && model.fit.is_some() {
-            true => {
-                shortened = first.part(0..TESTED.min(first.len()));
-                std::slice::from_ref(&shortened)
-            }
-            false => recordings,
+        let looked_at = match model.fit {
+            Some(_) => few(recordings.as_ref()),
+            None => Cow::Borrowed(recordings.as_ref()),
         };
-        let mut evaluation = evaluate_from(model, looked_at, Start::Fitted)?;
+        let mut evaluation = evaluate_from(model, &looked_at, Start::Fitted)?;
         // A part of what was fitted was fitted.
         evaluation.was_fitted |= model.fit.is_some();
-        Self::of_evaluation(model, looked_at, &evaluation)
+        Self::of_evaluation(model, &looked_at, &evaluation)
+    }
+
+    /// The verdict on a model that was fitted to `recordings` while `what` was held out. Where other
+    /// recordings are among it, these tell, and the rivals are those fitted to `recordings`
+    /// ([`crate::held_out`]). Else as [`Verdict::of_fit`].
+    ///
+    /// # Errors
+    /// As [`crate::evaluate`].
+    pub fn of_fit_holding_out(
+        model: &Model,
+        recordings: &(impl AsRef<[Recording]> + ?Sized),
+        what: &HoldOut,
+    ) -> Result<Self> {
+        let others: Vec<Recording> = what.recordings().into_iter().cloned().collect();
+        if others.is_empty() {
+            return Self::of_fit(model, recordings);
+        }
+        let run = forward(model, &others, Start::Fitted)?;
+        let mut verdict = Self::of_run(model, &others, &run.output_model, (run.errors, false))?;
+        verdict.rival = best_of(&held_out(model, recordings, &others)?.rivals);
+        if let Some(worst) = &mut verdict.worst {
+            let source = others[worst.recording].source.as_ref();
+            worst.file = source.map(|source| source.path.display().to_string());
+        }
+        verdict.add(&evaluate_from(model, &few(&others), Start::Fitted)?);
+        verdict.judge();
+        Ok(verdict)
     }
 
     /// The verdict on a model that was evaluated on `recordings`. If it was fitted to them, what its
@@ -192,13 +222,18 @@ impl Verdict {
     ) -> Result<Self> {
         let run = (evaluation.forward, evaluation.was_fitted);
         let mut verdict = Self::of_run(model, recordings.as_ref(), &evaluation.output_model, run)?;
-        verdict.causes.extend(cause::outside(evaluation));
-        if !evaluation.was_fitted {
-            verdict.causes.extend(cause::elsewhere(evaluation));
-        }
-        verdict.inverse = of_inverse(evaluation);
+        verdict.add(evaluation);
         verdict.judge();
         Ok(verdict)
+    }
+
+    /// What an evaluation says beside the outputs.
+    fn add(&mut self, evaluation: &Evaluation) {
+        self.causes.extend(cause::outside(evaluation));
+        if !evaluation.was_fitted {
+            self.causes.extend(cause::elsewhere(evaluation));
+        }
+        self.inverse = of_inverse(evaluation);
     }
 
     /// As [`Verdict::of_evaluation`], without the inverse.
@@ -249,11 +284,13 @@ impl Verdict {
                 worst: None,
                 has_time: false,
                 has_load: false,
+                one_speed: None,
                 input: first.input_quantity.clone(),
                 output: first.output_quantity.clone(),
             },
         };
         verdict.noise = noise_of(recordings, output);
+        verdict.one_speed = speed::one_speed(recordings);
         verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
         verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());
         let percent = verdict.percent.unwrap_or(f64::INFINITY);
@@ -306,10 +343,9 @@ impl Verdict {
             .causes
             .iter()
             .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
-        let guessed = self.causes.iter().any(|cause| match cause {
-            Cause::FewBranches { branches } => *branches <= cause::TWO_LOOPS,
-            Cause::FewPoints { .. } | Cause::LoadsLeftOut { .. } => true,
-            _ => false,
+        let guessed = self.causes.iter().any(|cause| {
+            let few = matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. });
+            few || matches!(cause, Cause::LoadsLeftOut { .. })
         });
         self.grade = match (by_error, rival_wins) {
             _ if outside => Grade::Poor,
@@ -327,6 +363,15 @@ impl Verdict {
         }
         self.causes
             .sort_by(|a, b| b.weight().total_cmp(&a.weight()));
+    }
+}
+
+/// As many of the recordings as are evaluated beside a fit: all, or the beginning of the first.
+fn few(recordings: &[Recording]) -> Cow<'_, [Recording]> {
+    let samples: usize = recordings.iter().map(Recording::len).sum();
+    match recordings.first() {
+        Some(first) if samples > TESTED => vec![first.part(0..TESTED.min(first.len()))].into(),
+        _ => recordings.into(),
     }
 }
 
@@ -382,6 +427,7 @@ fn worst(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Op
     let (_, number, sample, modelled) = errors.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let recording = &recordings[number];
     Some(Worst {
+        file: None,
         recording: number,
         sample,
         place: recording.place(sample),

@@ -17,7 +17,7 @@ impl Serialize for Verdict {
             inverse: Option<Errors>,
             rival: Option<(&'a str, f64)>,
             causes: Vec<(&'static str, String)>,
-            worst: Option<Worst>,
+            worst: Option<&'a Worst>,
             text: String,
         }
         let causes = self.causes.iter();
@@ -35,7 +35,7 @@ impl Serialize for Verdict {
             causes: causes
                 .map(|cause| (cause.name(), self.sentence(cause)))
                 .collect(),
-            worst: self.worst,
+            worst: self.worst.as_ref(),
             text: self.to_string(),
         }
         .serialize(serializer)

@@ -1,7 +1,7 @@
 //! What a fit was tested on, as its record tells.
 
 use super::Basis;
-use crate::hold_out::{HeldOut, PART};
+use crate::hold_out::{HeldOut, PART, RivalErrors};
 use crate::model::{Criterion, FitSummary};
 
 /// A curve is found after the plane was chosen. This entry of the record has the error on blocks left
@@ -23,14 +23,11 @@ pub(super) struct Tested {
 impl Tested {
     pub(super) fn of(fit: &FitSummary) -> Self {
         if let Some(held_out) = fit.other.get("hold_out").and_then(HeldOut::from_record) {
-            let rivals = held_out.rivals.iter();
-            let rivals = rivals
-                .filter_map(|rival| Some((rival.name.to_owned(), rival.errors.nrmse_percent?)));
             return Self {
                 basis: Basis::HeldOut,
                 rmse: held_out.model.rmse,
                 percent: held_out.model.nrmse_percent,
-                rival: best(rivals),
+                rival: best_of(&held_out.rivals),
             };
         }
         let validation = fit.validation.as_ref();
@@ -75,6 +72,12 @@ impl Tested {
 /// Whether the fit was tested on another recording, and not on a part of one that it saw.
 pub(super) fn on_others(fit: &FitSummary) -> bool {
     fit.other.contains_key("hold_out") && !fit.other.contains_key(PART)
+}
+
+/// The best rival of what was held out, and its error in percent.
+pub(super) fn best_of(rivals: &[RivalErrors]) -> Option<(String, f64)> {
+    let percent = |rival: &RivalErrors| Some((rival.name.to_owned(), rival.errors.nrmse_percent?));
+    best(rivals.iter().filter_map(percent))
 }
 
 fn best(rivals: impl Iterator<Item = (String, f64)>) -> Option<(String, f64)> {

@@ -125,12 +125,19 @@ impl Verdict {
                 "mostly noise of the readings ({}): a better model cannot help",
                 self.output.text(*noise)
             ),
-            Cause::FewBranches { branches } => {
-                let branches = match branches {
-                    1 => "one branch was recorded".to_owned(),
-                    count => format!("only {count} branches were recorded"),
-                };
-                format!("{branches}: what other paths do is a guess")
+            Cause::FewBranches { branches: 1, .. } => {
+                "one branch was recorded: what other paths do is a guess".into()
+            }
+            Cause::FewBranches {
+                branches,
+                different,
+            } if *branches > 2 * different => format!(
+                "only {different} branches that were recorded are different, the other {} repeat \
+                 them: what other paths do is a guess",
+                branches - different
+            ),
+            Cause::FewBranches { branches, .. } => {
+                format!("only {branches} branches were recorded: what other paths do is a guess")
             }
             Cause::FewPoints { points } => {
                 format!("the input stands at {points} points only: what other paths do is a guess")
@@ -176,7 +183,7 @@ impl Verdict {
     }
 
     fn worst(&self) -> Option<String> {
-        let worst = self.worst?;
+        let worst = self.worst.as_ref()?;
         let time = worst
             .time
             .map(|time| format!(" at {} s", (time * 1e6).round() / 1e6));
@@ -204,8 +211,6 @@ impl Verdict {
             Some(Cause::Part(_)) => moves.or(first),
             _ => first,
         };
-        // A stage that depends on time cannot be asked for beside rows that are held out.
-        let can_be_late = self.has_time && self.basis != Basis::HeldOut;
         let is_good = self.grade == Grade::Good;
         match weightiest {
             _ if self.basis == Basis::Fitted && self.grade == Grade::Untested => {
@@ -221,10 +226,15 @@ impl Verdict {
                     ),
                 }
             }
-            _ if is_good && self.basis != Basis::OtherRecording => Remedy::new(
-                "evaluate it on another recording: the same actuator on another day may differ",
-                [],
-            ),
+            _ if is_good && self.basis != Basis::OtherRecording => {
+                let speed = self.one_speed.map(|speed| {
+                    let speed = self.input.text(speed);
+                    format!("; so may another speed, as all of this one is at {speed} per second")
+                });
+                let words = "evaluate it on another recording: the same actuator on another day may \
+                             differ";
+                Remedy::new(format!("{words}{}", speed.unwrap_or_default()), [])
+            }
             _ if is_good => Remedy::new("use it: invert, control, export", []),
             Some(Cause::Outside { .. }) => Remedy::new(
                 "fit a recording that covers this range, or check the unit of the input",
@@ -288,12 +298,6 @@ impl Verdict {
                 let [load, time] = [Setting::any("load"), Setting::any("time")];
                 let [creep, thermal] = [Setting::word("creep", "auto"), Setting::on("thermal")];
                 match (self.has_load, self.has_time) {
-                    _ if self.has_time && !can_be_late => match self.has_load {
-                        true => Remedy::new(MORE, []),
-                        false => {
-                            Remedy::new(words(", or name what else moves the output: {}"), [load])
-                        }
-                    },
                     (false, false) => Remedy::new(
                         words(", or name what else moves the output: {}, {}"),
                         [load, time],

@@ -213,9 +213,42 @@ fn what_cannot_be_held_out_is_refused() {
     // Nobody asked for a ring: branches can be held out as without time.
     assert!(fit_holding_out(&fit, &timed, &HoldOut::Branches(0.2)).is_ok());
     let lag = fit.lag(2.0);
-    let refused = fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).unwrap_err();
+    let refused = fit_holding_out(&lag, &timed, &HoldOut::Rows(vec![9..=20])).unwrap_err();
     assert!(refused.to_string().contains("rows at the"), "{refused}");
     assert!(fit_holding_out(&lag, &timed, &HoldOut::Rows(vec![length - 50..=length])).is_ok());
+    // So the last branches are held out, and not some between.
+    assert!(fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).is_ok());
+}
+
+/// What comes late is found although a share of the branches is held out: these are the last ones. Of
+/// an input that dies down they would be the easy ones, so there they are spread, and it is said that
+/// nothing was looked for.
+#[test]
+fn a_dead_time_is_found_beside_branches_that_are_held_out() {
+    let plane = Plane::new(0.0, 100.0, 15).unwrap();
+    let plant = Model::new(Operator::Mkp, plane, vec![1.0; 120], 3.0, Sign::Positive).unwrap();
+    let recorded = |dies_down: bool| {
+        let size = |n: f64| match dies_down {
+            true => 50.0 * (1.0 - n / 1500.0),
+            false => 35.0 + 15.0 * (0.31 * n).sin(),
+        };
+        let swing = (0..1500).map(|n| 50.0 - size(f64::from(n)) * (0.05 * f64::from(n)).cos());
+        let input: Vec<f64> = swing.collect();
+        let late: Vec<f64> = (0..1500)
+            .map(|n: usize| input[n.saturating_sub(3)])
+            .collect();
+        Recording {
+            time: Some((0..1500).map(|n| 0.1 * f64::from(n)).collect()),
+            ..Recording::new(input, plant.simulate(&late).unwrap()).unwrap()
+        }
+    };
+    let fit = Fit::new().levels(12).bootstrap(0);
+    let (found, report) = fit_holding_out(&fit, &recorded(false), &HoldOut::Branches(0.2)).unwrap();
+    assert_eq!(found.delay().samples(), 3);
+    assert!(!report.without_dynamics);
+    assert!(report.model.nrmse_percent.unwrap() < 1.0, "{report:?}");
+    let (found, report) = fit_holding_out(&fit, &recorded(true), &HoldOut::Branches(0.2)).unwrap();
+    assert!(found.delay().is_none() && report.without_dynamics);
 }
 
 /// Rows are counted through all recordings: a span over the border takes the end of one and the

@@ -137,7 +137,7 @@ fn any_recording_gets_a_verdict() {
             parts.iter().all(|part| part.size.is_finite()),
             "seed {seed}: {parts:?}"
         );
-        let worst = verdict.worst.unwrap();
+        let worst = verdict.worst.clone().unwrap();
         assert_eq!(
             (worst.measured - worst.modelled).abs(),
             evaluation.forward.max_abs

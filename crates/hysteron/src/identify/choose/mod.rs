@@ -17,7 +17,7 @@ pub(super) use seen::Seen;
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
-use crate::model::{Smooth, Validation};
+use crate::model::{Model, Smooth, Validation};
 use crate::progress::Progress;
 use validate::{Candidates, validated};
 
@@ -57,4 +57,22 @@ pub(super) fn tested(
 ) -> Result<Validation> {
     let candidates = Candidates::new(Some(options.levels), Some(options.smooth));
     Ok(validated(seen, options, &candidates, None, progress)?.1)
+}
+
+/// A stage that nobody asked for has to be better by this share.
+const WORTH: f64 = 0.1;
+
+/// Whether a model with a stage predicts what was left out clearly better than the one without it,
+/// each with the levels and the other stages that it chose. Where nothing was left out, what was
+/// fitted tells: a dead time or a ring adds no weights to follow it with.
+pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
+    let (Some(with), Some(without)) = (&with.fit, &without.fit) else {
+        return false;
+    };
+    match (&with.validation, &without.validation) {
+        (Some(with), Some(without)) if with.criterion == without.criterion => with
+            .criterion
+            .is_worth(with.value(), without.value(), WORTH),
+        _ => with.rmse < (1.0 - WORTH) * without.rmse,
+    }
 }

@@ -2,8 +2,9 @@
 //!
 //! `body` is the thermal body, `latent` the heat that it loses to the operators, `load` the shift by
 //! the load, `spacing` the place of the levels, `ring`, `after` and `curve` those behind the
-//! operators, from the last to the first, and `lag` a lag that nobody asked for. Each finds its constants and hands on recordings as the
-//! next stage sees them. `nelder_mead` is the search of body, heat and ring.
+//! operators, from the last to the first, and `lag` a lag that nobody asked for. Each finds its
+//! constants and hands on recordings as the next stage sees them. `nelder_mead` is the search of
+//! body, heat and ring.
 
 mod after;
 mod body;
@@ -35,6 +36,9 @@ use crate::series::range;
 use serde_json::json;
 use std::borrow::Cow;
 
+/// The entry of a fit's record for a ring that was found.
+pub(crate) const RING: &str = "ring";
+
 /// What a fit identifies besides the weights.
 pub(crate) struct Asked<'a> {
     /// What heats the operators.
@@ -47,6 +51,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) shape: Option<SpacingShape>,
     /// Whether what was given is tested on what is left out, too.
     pub(crate) tested: bool,
+    /// Whether a ring may be found, if the options look for one.
+    pub(crate) rings: bool,
     /// Samples without weight.
     pub(crate) outliers: &'a [Outlier],
 }
@@ -87,17 +93,18 @@ pub(crate) fn fit(
         options.load_degree = Some(law.degree);
         seen = Cow::Owned(law.seen);
         notes.insert("load".to_owned(), json!(law.report));
-        found.curves = Some(law.curves.clone());
         found.registration = law.registration;
-        options.load_curves = law.uses_curves.then_some(law.curves);
+        options.load_curves = law.curves.clone().filter(|_| law.uses_curves);
+        found.curves = law.curves;
     }
     // Before the levels are chosen: what rings would be taken for a rough plane.
     let mut ring = None;
     if options.looks_for_ring()
+        && asked.rings
         && !loaded
-        && let Some(swinging) = ring::find(&seen, &options, progress)?
+        && let Some(swinging) = ring::find(&seen, &options, asked.open, progress)?
     {
-        notes.insert("ring".to_owned(), json!(swinging.report));
+        notes.insert(RING.to_owned(), json!(swinging.report));
         seen = Cow::Owned(swinging.recordings);
         ring = Some(swinging.constants);
     }

@@ -7,9 +7,11 @@
 
 use crate::error::{Error, Result};
 use crate::identify::changed::few_in_time;
+use crate::identify::choose::Open;
 use crate::identify::options::{Dynamics, FitOptions};
 use crate::identify::stages::nelder_mead::minimise;
 use crate::identify::stages::resonator::{Clock, Resonator};
+use crate::identify::stages::search::{fine, is_better, noise_percent};
 use crate::identify::weights::problem::Problem;
 use crate::model::Smooth;
 use crate::progress::Progress;
@@ -86,6 +88,7 @@ pub(super) struct Swinging {
 pub(super) fn find(
     recordings: &[Recording],
     options: &FitOptions,
+    open: Open,
     progress: Progress<'_>,
 ) -> Result<Option<Swinging>> {
     let asked = options.dynamics == Dynamics::Ring;
@@ -95,6 +98,7 @@ pub(super) fn find(
     if !asked && recordings.iter().any(coarse) {
         return Ok(None);
     }
+    let fine = fine(options, open);
     let options = FitOptions {
         bootstrap: 0,
         smooth: options.smooth.at_least(SMOOTH),
@@ -104,6 +108,10 @@ pub(super) fn find(
     let Some((first, report)) = judged(&looked_at, &options, asked, progress)? else {
         return Ok(None);
     };
+    // On a coarse plane a ring helps where there is none, so it has to help on a fine one as well.
+    if !asked && !explains(&looked_at, &fine, first, progress)? {
+        return Ok(None);
+    }
     let Some(clock) = Clock::new(recordings) else {
         return Ok(None);
     };
@@ -166,6 +174,28 @@ fn judged(
     let [without, with] = squares.map(|sum| 100.0 * (sum / count).sqrt() / (high - low));
     let worth = with < (1.0 - WORTH) * without;
     Ok((worth || asked).then_some((first, Report { without, with })))
+}
+
+/// Whether a ring explains a part of what the operators leave of the outputs.
+fn explains(
+    recordings: &[Recording],
+    options: &FitOptions,
+    ring: [f64; 2],
+    progress: Progress<'_>,
+) -> Result<bool> {
+    let Some(clock) = Clock::new(recordings) else {
+        return Ok(false);
+    };
+    let mut search = Search::new(recordings, options, &clock, progress)?;
+    let still = search.still(None)?;
+    let (_, _, swung) = search.swung(ring, None, &still)?;
+    let (low, high) = range(&search.measured);
+    let count = search.measured.len() as f64;
+    let [without, with] = [still, swung].map(|outputs| {
+        let squares = left(&outputs, &search.measured, None);
+        100.0 * (squares / count).sqrt() / (high - low)
+    });
+    Ok(is_better(with, without, WORTH, noise_percent(recordings)))
 }
 
 struct Search<'a> {

@@ -71,18 +71,38 @@ impl Candidate {
 
     /// The same with another share than usual.
     pub(super) fn gains(&self, worth: f64, simpler: &Self, noise: f64) -> bool {
-        let share = |less: f64| 1.0 - (1.0 - less) * (1.0 - less);
-        let better = |error: f64, other: f64| {
-            let gained = other * other - error * error;
-            let beyond = other * other - noise * noise;
-            gained > share(worth) * beyond && gained > share(LEAST) * other * other
-        };
+        let better = |error, other| is_better(error, other, worth, noise);
         better(self.left_out, simpler.left_out) && better(self.fitted, simpler.fitted)
     }
 }
 
+/// Whether an error is smaller than another one by a share of what is beyond the noise, and by a small
+/// share of the whole.
+pub(super) fn is_better(error: f64, other: f64, worth: f64, noise: f64) -> bool {
+    let share = |less: f64| 1.0 - (1.0 - less) * (1.0 - less);
+    let gained = other * other - error * error;
+    let beyond = other * other - noise * noise;
+    gained > share(worth) * beyond && gained > share(LEAST) * other * other
+}
+
+/// Options with the fine plane on which constants are judged.
+pub(super) fn fine(options: &FitOptions, open: Open) -> FitOptions {
+    FitOptions {
+        levels: match open.levels {
+            true => FINE.max(options.levels),
+            false => options.levels,
+        },
+        smooth: match open.smooth {
+            true => SLIGHT,
+            false => options.smooth,
+        },
+        bootstrap: 0,
+        ..options.clone()
+    }
+}
+
 /// The white noise of the outputs, in percent of their range, as far as it can be told.
-fn noise_percent(recordings: &[Recording]) -> f64 {
+pub(super) fn noise_percent(recordings: &[Recording]) -> f64 {
     let (low, high) = range_of_all(recordings.iter().map(|recording| &recording.output));
     let told = recordings
         .iter()
@@ -130,17 +150,7 @@ impl<'a> Search<'a> {
             smooth: options.smooth.at_least(SMOOTH),
             ..options.clone()
         };
-        let fine = FitOptions {
-            levels: match open.levels {
-                true => FINE.max(options.levels),
-                false => options.levels,
-            },
-            smooth: match open.smooth {
-                true => SLIGHT,
-                false => options.smooth,
-            },
-            ..coarse.clone()
-        };
+        let fine = fine(options, open);
         Ok(Self {
             recordings,
             coarse,

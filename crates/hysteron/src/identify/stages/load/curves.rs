@@ -27,6 +27,15 @@ pub(super) fn moving_only(curves: &LoadCurves) -> LoadCurves {
     }
 }
 
+/// Curves over the same loads that change nothing.
+pub(super) fn still(curves: &LoadCurves) -> LoadCurves {
+    LoadCurves {
+        loads: curves.loads.clone(),
+        shifts: vec![0.0; curves.loads.len()],
+        ..LoadCurves::default()
+    }
+}
+
 /// The curves without what they are at load number `left`.
 pub(super) fn without(curves: &LoadCurves, left: usize) -> LoadCurves {
     let others = |values: &[f64]| {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
-use crate::identify::stages::load::curves::{fine, moving_only, without};
+use crate::identify::stages::load::curves::{fine, moving_only, still, without};
 use crate::identify::stages::load::search::Search;
 use crate::identify::stages::load::{Moves, Tried};
 use crate::identify::weights::problem::Problem;
@@ -61,6 +61,7 @@ impl Search<'_> {
             (Tried::Weights { degree, .. }, _) => {
                 (moving_only(&known), Registration::default(), degree)
             }
+            (Tried::Alone { degree }, _) => (still(&known), Registration::default(), degree),
             (Tried::Gain { stroke, .. }, _) => {
                 let others = stroke.at(&known, moves.reach, &rows);
                 (others, Registration::default(), 0)

@@ -16,7 +16,7 @@ mod stroke;
 
 use crate::error::{Error, Result};
 use crate::identify::options::{FitOptions, LoadLaw};
-use crate::identify::stages::load::curves::{fine, moving_only};
+use crate::identify::stages::load::curves::{fine, moving_only, still};
 use crate::identify::stages::load::groups::{Groups, Samples, TELLING};
 use crate::identify::stages::load::registration::Loops;
 use crate::identify::stages::load::search::Search;
@@ -42,7 +42,8 @@ const WORTH: f64 = 0.9;
 
 /// The law of the load, and what chose it.
 pub(super) struct Law {
-    pub(super) curves: LoadCurves,
+    /// `None` where the axis does not move.
+    pub(super) curves: Option<LoadCurves>,
     pub(super) registration: Registration,
     /// The recordings as the operators see them.
     pub(super) seen: Vec<Recording>,
@@ -81,14 +82,16 @@ enum Tried {
     Gain { stroke: Stroke, scaled: bool },
     /// Weights of this order in the load, on a shifted axis.
     Weights { degree: usize, scaled: bool },
+    /// Weights of this order in the load, on an axis that does not move.
+    Alone { degree: usize },
 }
 
 impl Tried {
     /// Whether both move the axis in the same way.
     fn is_like(self, other: Self) -> bool {
-        use Tried::{Gain, Registered, Weights};
+        use Tried::{Alone, Gain, Registered, Weights};
         match (self, other) {
-            (Registered { .. }, Registered { .. }) => true,
+            (Registered { .. }, Registered { .. }) | (Alone { .. }, Alone { .. }) => true,
             (Gain { scaled: a, .. }, Gain { scaled: b, .. })
             | (Weights { scaled: a, .. }, Weights { scaled: b, .. }) => a == b,
             _ => false,
@@ -212,11 +215,13 @@ pub(super) fn find(
             (stroke.at(curves, moves.reach, &rows), true, 0)
         }
         Tried::Weights { degree, .. } => (moving_only(curves), false, degree),
+        Tried::Alone { degree } => (still(curves), false, degree),
     };
     let registration = match (&moves.loops, law) {
         (Some(loops), Tried::Registered { .. }) => loops.registration(&moves.curves, &rows),
         _ => Registration::default(),
     };
+    let moves_axis = !matches!(law, Tried::Alone { .. });
     Ok(Law {
         seen: search.seen(&curves, &registration, recordings)?,
         report: Report {
@@ -230,7 +235,7 @@ pub(super) fn find(
             left_out_percent: (inner > 0).then_some(error),
             tried,
         },
-        curves,
+        curves: moves_axis.then_some(curves),
         registration,
         uses_curves,
         degree,
@@ -256,9 +261,14 @@ fn candidates(moves: &Moves, options: &FitOptions, groups: &Groups) -> Vec<Tried
         (None, Some(_)) => {
             // Two loads cannot tell weights of their own from one shape.
             let degrees = 1..=groups.knots.len().saturating_sub(2).min(2);
-            let weights = degrees.map(|degree| Tried::Weights { degree, scaled });
+            let weights = degrees
+                .clone()
+                .map(|degree| Tried::Weights { degree, scaled });
+            let alone = degrees.map(|degree| Tried::Alone { degree });
+            // Once, and where the law is left to the data.
+            let alone = alone.filter(|_| !scaled && options.load_law == LoadLaw::Auto);
             let gains = strokes.map(|&stroke| Tried::Gain { stroke, scaled });
-            gains.chain(weights).collect()
+            gains.chain(weights).chain(alone).collect()
         }
     }
 }
