@@ -339,8 +339,8 @@ class HeldOut(_Result):
     rivals : tuple of RivalErrors
         Of a straight line and of interpolation.
     without_dynamics : bool
-        Whether neither a ring nor a lag was looked for, because more than the end of a recording
-        was held out.
+        Whether neither a dead time, a ring nor a lag was looked for, because more than the end of
+        a recording was held out.
     """
 
     model: Errors

@@ -94,9 +94,9 @@ use pyo3::types::{PyDict, PySequence, PyString};
 ///     widened to what changes between sessions.
 /// hold_out : str, Recording or list of them, optional
 ///     What takes no part in the fit, and tests it beside a straight line and interpolation:
-///     ``'branches:20%'`` (a share up to 33 %, spread over the recording), ``'rows:100-200'``
-///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. A list may hold one such
-///     text beside recordings. `FitSummary.hold_out` has the errors there.
+///     ``'branches:20%'`` (a share up to 33 %, spread over the recording, with time the last ones),
+///     ``'rows:100-200'`` or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. A list
+///     may hold one such text beside recordings. `FitSummary.hold_out` has the errors there.
 /// thermal : {None, 'first-order', 'auto', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. 'auto' adds heat that the operators bind where that predicts what is left out. The

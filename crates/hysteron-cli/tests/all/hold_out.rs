@@ -83,6 +83,27 @@ fn every_way_of_holding_out_is_reported_and_kept() {
     assert_eq!(without.get("hold_out"), None);
 }
 
+/// Reasons and worst sample are of the file that was held out, and the file is named.
+#[test]
+fn a_file_that_was_held_out_is_judged() {
+    let folder = bench();
+    let mut other = play(700, 9.0);
+    other.iter_mut().for_each(|[_, _, y]| *y *= 1.3);
+    other[400][2] += 3.0;
+    write(folder.path(), "other.csv", &other);
+    let done = run(
+        folder.path(),
+        &format!("{FIT} --hold-out other.csv -o m.json"),
+    );
+    let said = text(&done.stdout);
+    assert!(
+        said.contains("on a recording that was not fitted"),
+        "{said}"
+    );
+    assert!(said.contains("worst    other.csv, sample 401"), "{said}");
+    assert!(said.contains("is a gain"), "{said}");
+}
+
 /// The same model, whatever was measured in the rows held out.
 #[test]
 fn rows_held_out_do_not_change_the_model() {

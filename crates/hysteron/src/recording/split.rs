@@ -253,8 +253,8 @@ impl Recording {
     fn split_last_branches(&self, share: f64) -> Result<(Split, bool)> {
         let (all, can_be) = self.branches(share)?;
         let count = ((share * all.len() as f64).round() as usize).max(1);
-        let last = can_be.iter().rev().take(count).last();
-        let first = last.map_or(self.len(), |b| all[*b].start);
+        let held = &can_be[can_be.len().saturating_sub(count)..];
+        let first = held.first().map_or(self.len(), |b| all[*b].start);
         let (low, high) = range(&self.input[..first]);
         let (from, to) = range(&self.input[first..]);
         let slight = usual_tolerance(&self.input);

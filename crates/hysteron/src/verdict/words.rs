@@ -250,8 +250,8 @@ impl Verdict {
                     [],
                 ),
                 PartKind::Late if part.size < 0.0 => Remedy::new(
-                    "if the sensor of the input is slow, undo it with {}; else look whether rows of \
-                     input and output belong together",
+                    "if the sensor of the input is slow, undo it with {}; else look whether input and \
+                     output are exchanged, and whether their rows belong together",
                     [Setting::word("sensor-lag", "auto")],
                 ),
                 PartKind::Late if self.has_time => Remedy::new(

@@ -102,6 +102,46 @@ fn rmse(a: &[f64], b: &[f64]) -> f64 {
     (squares.sum::<f64>() / a.len() as f64).sqrt()
 }
 
+/// Few strokes of a steep loop, without any dynamics: a plane that they do not determine may be
+/// mended by a ring, on some of what is left out.
+#[test]
+fn few_strokes_of_a_still_plant_do_not_ring() {
+    let widths: Vec<f64> = (0..14).map(|n| 0.5 + 11.5 / 13.0 * f64::from(n)).collect();
+    for seed in 0..6 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut inputs = vec![20.0_f64];
+        let mut ends = vec![80.0, 20.0];
+        while ends.len() < 8 {
+            let end = match ends.len() % 2 == 0 {
+                true => random.random_range(50.0..80.0),
+                false => random.random_range(20.0..45.0),
+            };
+            ends.push(end);
+        }
+        for end in ends {
+            let from = inputs[inputs.len() - 1];
+            let count = ((end - from).abs() / 0.6).ceil();
+            inputs.extend((1..=count as i32).map(|n| from + (end - from) * f64::from(n) / count));
+        }
+        let mut plays = vec![inputs[0]; widths.len()];
+        let mut output = |x: &f64| {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (play, width) in plays.iter_mut().zip(&widths) {
+                *play = play.clamp(x - width, x + width);
+                sum += (-width / 5.0).exp() * *play;
+                weights += (-width / 5.0).exp();
+            }
+            let noise = 0.01 * random.random_range(-1.0..1.0);
+            5.0 + 5.0 * ((sum / weights - 50.0) / 4.0).tanh() + noise
+        };
+        let outputs = inputs.iter().map(&mut output).collect();
+        let mut recording = Recording::new(inputs, outputs).unwrap();
+        recording.time = Some((0..recording.len()).map(|n| n as f64).collect());
+        let found = quick().run(&recording).unwrap();
+        assert_eq!(ring_of(&found), None, "seed {seed}");
+    }
+}
+
 #[test]
 fn a_ring_that_is_excited_is_found_and_its_inverse_follows_a_path() {
     let noise = 0.005;

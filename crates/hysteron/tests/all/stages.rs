@@ -272,6 +272,47 @@ fn under_load(stress: f64) -> Recording {
     recording
 }
 
+/// Weights that are straight in the load, and an axis that stays where it is: nothing has to be moved.
+#[test]
+fn weights_that_follow_the_load_alone_are_found() {
+    let plane = Plane::new(0.0, 10.0, 12).unwrap();
+    let model = |weight: &dyn Fn(usize, usize) -> f64| {
+        let weights = hysteron::operators(12).map(|(i, j)| weight(i, j)).collect();
+        Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive).unwrap()
+    };
+    let narrow = model(&|i, j| f64::from(u8::from(j - i < 3)));
+    let wide = model(&|i, j| f64::from(u8::from(j - i > 4 && i > 2)));
+    let recorded = |load: f64| {
+        let swing = |n: i32| 5.0 - (5.0 - 0.004 * f64::from(n)) * (0.05 * f64::from(n)).cos();
+        let input: Vec<f64> = (0..900).map(swing).collect();
+        let [a, b] = [&narrow, &wide].map(|model| model.simulate(&input).unwrap());
+        let output = a.iter().zip(b).map(|(a, b)| a + 0.01 * load * b).collect();
+        let mut recording = Recording::new(input, output).unwrap();
+        recording.load = Some(vec![load; 900]);
+        recording
+    };
+    let fitted = [50.0, 100.0, 150.0, 200.0].map(recorded);
+    let fit = Fit::new().levels(12).smooth(0.0).bootstrap(0);
+    let fit = fit.spacing(Spacing::Uniform);
+    let found = fit.run(&fitted).unwrap();
+    assert!(found.load.as_ref().unwrap().curves.is_none());
+    let unseen = recorded(120.0);
+    let error = evaluate_from(&found, &unseen, Start::Off).unwrap();
+    // As good as a load that is nearer by a factor of ten.
+    let nearest = recorded(100.0).output;
+    let apart = unseen
+        .output
+        .iter()
+        .zip(nearest)
+        .map(|(a, b)| (a - b).powi(2));
+    let apart = (apart.sum::<f64>() / 900.0).sqrt();
+    assert!(
+        error.forward.rmse < apart / 10.0,
+        "{:?} {apart}",
+        error.forward
+    );
+}
+
 #[test]
 fn a_load_that_was_left_out_is_predicted_by_the_shift() {
     let fitted = [50.0, 100.0, 200.0].map(under_load);

@@ -418,10 +418,14 @@ fn few_set_points_are_no_promise() {
     let plant = model(&weights(&mut rng));
     let range = plant.output_range();
     let noise = 0.003 * (range.1 - range.0);
-    for (points, held) in [(30, 40), (400, 3)] {
+    // The last ones are at eight places, over and over.
+    for (points, held, again) in [(30, 40, false), (400, 3, false), (400, 3, true)] {
         let mut input = Vec::new();
         for _ in 0..points {
-            let at = rng.random_range(20.0..80.0);
+            let at = match again {
+                true => 20.0 + 60.0 / 7.0 * f64::from(rng.random_range(0..8)),
+                false => rng.random_range(20.0..80.0),
+            };
             input.extend(std::iter::repeat_n(at, held));
         }
         let output = plant.simulate(&input).unwrap();
@@ -432,10 +436,89 @@ fn few_set_points_are_no_promise() {
         let verdict = Verdict::of_fit(&model, &recording).unwrap();
         let is_few = |cause: &Cause| matches!(cause, Cause::FewPoints { .. });
         let few = verdict.causes.iter().any(is_few);
-        assert_eq!(few, points == 30, "{verdict}");
+        assert_eq!(few, points == 30 || again, "{verdict}");
         assert_eq!(verdict.grade == Grade::Good, !few, "{verdict}");
         let advice = hysteron::advice(&model, &[recording]).unwrap();
         let is_cured = |one: &hysteron::Advice| one.is_cured_by_preparation();
         assert!(!advice.iter().any(is_cured), "{advice:?}");
     }
+}
+
+/// One or two loops over and over: what a fit leaves out is a copy of what it keeps. As many branches
+/// that differ are a test.
+#[test]
+fn copies_of_few_branches_are_no_promise() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let plant = model(&weights(&mut rng));
+    let range = plant.output_range();
+    let noise = 0.001 * (range.1 - range.0);
+    let mut recorded = |sizes: &dyn Fn(f64) -> f64| {
+        let swing = |n: i32| 50.0 - sizes(f64::from(n)) * (0.1 * f64::from(n)).cos();
+        let input: Vec<f64> = (0..1500).map(swing).collect();
+        let output = plant.simulate(&input).unwrap();
+        let noisy = |y: f64| y + noise * rng.random_range(-1.0..1.0);
+        Recording::new(input, output.into_iter().map(noisy).collect()).unwrap()
+    };
+    let equal = recorded(&|_| 30.0);
+    let two = recorded(&|n| {
+        if (n * 0.1 / std::f64::consts::TAU) as i32 % 2 == 0 {
+            30.0
+        } else {
+            17.0
+        }
+    });
+    let many = recorded(&|n| 30.0 - 0.015 * n);
+    let fit = |recording: &Recording| Fit::new().run(recording).unwrap();
+    for recording in [&equal, &two] {
+        let model = fit(recording);
+        let verdict = Verdict::of_fit(&model, recording).unwrap();
+        assert!(verdict.percent.unwrap() < 1.0, "{verdict}");
+        assert_eq!(verdict.grade, Grade::Usable, "{verdict}");
+        assert!(verdict.to_string().contains("the other"), "{verdict}");
+        assert_eq!(Verdict::of_record(&model).unwrap().grade, Grade::Usable);
+    }
+    // The same loop again is no test of a model of it; other loops are.
+    let model = fit(&equal);
+    assert_eq!(judged(&model, &recorded(&|_| 30.0)).0.grade, Grade::Usable);
+    let model = fit(&many);
+    let verdict = Verdict::of_fit(&model, &many).unwrap();
+    assert_eq!(verdict.grade, Grade::Good, "{verdict}");
+    assert_eq!(judged(&model, &equal).0.grade, Grade::Good);
+}
+
+/// Where another recording was held out, its error, its reasons and its worst sample are told.
+#[test]
+fn what_was_held_out_is_judged_by_itself() {
+    let plant = model(&[0.5; 78]);
+    let first = recording(&plant, |_, y| y);
+    let mut second = recording(&plant, |n, y| 1.3 * y + if n == 500 { 8.0 } else { 0.0 });
+    // Other inputs, so that it is another recording.
+    second.input.iter_mut().for_each(|x| *x += 1e-6);
+    let what = HoldOut::Recordings(vec![second]);
+    let (model, report) = fit_holding_out(&Fit::new().bootstrap(0), &first, &what).unwrap();
+    let verdict = Verdict::of_fit_holding_out(&model, &first, &what).unwrap();
+    assert_eq!(verdict.basis, Basis::OtherRecording);
+    assert_eq!(verdict.percent, report.model.nrmse_percent);
+    let best = report
+        .rivals
+        .iter()
+        .map(|rival| rival.errors.nrmse_percent.unwrap());
+    assert_eq!(
+        verdict.rival.as_ref().unwrap().1,
+        best.fold(f64::INFINITY, f64::min)
+    );
+    assert!(
+        matches!(&verdict.causes[0], Cause::Part(part) if part.kind == PartKind::Gain),
+        "{verdict}"
+    );
+    assert_eq!(verdict.worst.as_ref().unwrap().sample, 500);
+    assert!(
+        !verdict.next().to_string().contains("another recording"),
+        "{verdict}"
+    );
+    // A part of the recording that was fitted is judged with it.
+    let part = HoldOut::Branches(0.2);
+    let (model, _) = fit_holding_out(&Fit::new().bootstrap(0), &first, &part).unwrap();
+    let of_part = Verdict::of_fit_holding_out(&model, &first, &part).unwrap();
+    assert_eq!(of_part, Verdict::of_fit(&model, &first).unwrap());
 }

@@ -62,17 +62,18 @@ pub(super) fn tested(
 /// A stage that nobody asked for has to be better by this share.
 const WORTH: f64 = 0.1;
 
-/// Whether a model with a stage predicts what was left out clearly better than the one without it,
-/// each with the levels and the other stages that it chose. Where nothing was left out, what was
-/// fitted tells: a dead time or a ring adds no weights to follow it with.
+/// Whether a model with a stage predicts what was left out clearly better than the one without it, and
+/// follows what was fitted clearly better, each with the levels and the other stages that it chose. A
+/// dead time or a ring adds no weights to follow it with, and few branches that are left out say little.
 pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
     let (Some(with), Some(without)) = (&with.fit, &without.fit) else {
         return false;
     };
-    match (&with.validation, &without.validation) {
+    let predicts = match (&with.validation, &without.validation) {
         (Some(with), Some(without)) if with.criterion == without.criterion => with
             .criterion
             .is_worth(with.value(), without.value(), WORTH),
-        _ => with.rmse < (1.0 - WORTH) * without.rmse,
-    }
+        _ => true,
+    };
+    predicts && with.rmse < (1.0 - WORTH) * without.rmse
 }
