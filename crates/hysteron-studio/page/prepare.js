@@ -3,6 +3,7 @@
 import { ask } from "./api.js";
 import { by, el, fill, shown, unit } from "./dom.js";
 import * as look from "./look.js";
+import { each } from "./alike.js";
 
 const STEPS = [
   ["spikes", "spikes", "Spikes and bursts. A number: deviations from which on a sample is a spike."],
@@ -29,6 +30,7 @@ export function show(overview, changed) {
     typed.delete(file.id);
     changed(found);
   }, () => {});
+  const others = file.steps ? overview.files.filter((other) => other.id !== file.id && !other.problem && !same(other.steps, file.steps)) : [];
   const field = (/** @type {string[]} */ [name, title, meaning]) =>
     el("label", { class: "field" }, el("span", {}, title), el("input", { name, type: "text", value: /** @type {any} */ (steps)[name], list: "steps", autocomplete: "off", required: true, "data-key": `step-${name}`, oninput: (/** @type {any} */ e) => typed.set(file.id, { ...typed.get(file.id), [name]: e.target.value }) }), el("small", {}, meaning));
   const submit = (/** @type {any} */ event) => {
@@ -38,6 +40,7 @@ export function show(overview, changed) {
   fill(
     by("prepare"),
     el("p", {}, el("strong", {}, file.name), file.steps ? " is prepared. Fits take what is prepared." : " is as it was read."),
+    others.length > 0 ? el("button", { type: "button", "data-key": `prepare-others-${file.id}`, onclick: () => each(others, "prepare", { steps: file.steps }).then(changed) }, `The same for ${others.length === 1 ? others[0].name : `the ${others.length} other files`}`) : null,
     ...file.preparation.map((done) => report(done, file)),
     el("form", { onsubmit: submit },
       el("div", { class: "row" },
@@ -48,6 +51,9 @@ export function show(overview, changed) {
   );
 }
 
+/** @param {any} one @param {any} other */
+const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+
 /**
  * What a preparation did, in numbers.
  * @param {any} done
@@ -55,7 +61,7 @@ export function show(overview, changed) {
  */
 function report({ samples_before, samples, input_noise, output_noise, spikes, resampled, low_pass, lag, dead_band, judged }, file) {
   const [input, output] = [unit(file.input), unit(file.output)];
-  const of = (/** @type {any} */ repairs) => `${repairs.spikes} spikes, ${repairs.signs} lost signs${repairs.first.length > 0 ? ` (rows ${repairs.first.join(", ")}${repairs.spikes + repairs.signs > repairs.first.length ? ", …" : ""})` : ""}`;
+  const of = (/** @type {any} */ repairs) => `${repairs.spikes} spikes, ${repairs.signs} lost signs${repairs.first.length > 0 ? ` (samples ${repairs.first.join(", ")}${repairs.spikes + repairs.signs > repairs.first.length ? ", …" : ""})` : ""}`;
   const filter = (/** @type {any} */ one, /** @type {string} */ of) => (one ? `cut-off ${shown(one.cutoff)} ${low_pass.in_hertz ? "Hz" : "cycles a sample"}, removed ${shown(one.removed)}${of} (root mean square)` : "not needed");
   const rows = [
     ["Samples", samples === samples_before ? String(samples) : `${samples_before} before, ${samples} after`],

@@ -71,7 +71,7 @@ impl Session {
     }
 
     /// The rows of a file that were held out of a fit.
-    fn rows_held(&mut self, fit: Id, file: Id) -> Result<Spans, Fault> {
+    pub(super) fn rows_held(&mut self, fit: Id, file: Id) -> Result<Spans, Fault> {
         let fitted = self.fitted(fit)?;
         if let Some(spans) = fitted.held.get(&file) {
             return Ok(spans.clone());

@@ -3,9 +3,9 @@
 //! `request` defines both, `handle` leads from one to the other, `fault` is what is wrong. `state` is
 //! what the session keeps. `opened` is a file, `parts` its recordings, `prepare` their preparation,
 //! `design` the experiment that is missing. `fitting` asks for a fit, `job` is its work, `fitted` what
-//! it found; `carried` has these as bytes. `view` says what a picture shows. `look` and `plane` make the pictures, with the lines of
+//! it found and `judged` what is said of it; `carried` has these as bytes. `view` says what a picture shows. `look` and `plane` make the pictures, with the lines of
 //! `seen` from what `thinned` leaves; `layers` is drawn besides them, and `pick` points at a sample.
-//! `drive` is a model moved by hand, `take_home` what can be taken away, with `c_archive`; `commands`
+//! `drive` is a model moved by hand, `path` what it follows, `take_home` what can be taken away, with `c_archive`; `commands`
 //! is the same work as text, `saved` the session as a file.
 
 mod argument;
@@ -21,10 +21,12 @@ mod fitting;
 mod handle;
 mod id;
 mod job;
+mod judged;
 mod layers;
 mod look;
 mod opened;
 mod parts;
+mod path;
 mod pick;
 mod plane;
 mod prepare;
@@ -49,6 +51,7 @@ pub use job::{Finished, Job, JobView};
 pub use layers::Layers;
 pub use look::{Curves, Line};
 pub use opened::{Part, Purpose, RepairView};
+pub use path::{Follow, FollowedView, Side};
 pub use pick::WorstView;
 pub use plane::{PlaneKind, PlaneView, SampleView};
 pub use prepare::Steps;

@@ -86,7 +86,7 @@ fn a_click_finds_its_sample_and_the_worst_one_is_found() {
     let (mut session, file, fit) = fitted(json!({"levels": "12", "bootstrap": "0"}));
     // As in the verdict, a reading that the fit took for an outlier is not the worst one.
     let worst = ask(&mut session, json!({"request": "worst", "fit": fit})).unwrap();
-    let row = worst["sample"]["row"].as_u64().unwrap();
+    let row = worst["sample"]["number"].as_u64().unwrap();
     assert_eq!(worst["file"], file);
     let overview = ask(&mut session, json!({"request": "overview"})).unwrap();
     let verdict = overview["fits"][0]["verdict"].as_array().unwrap().iter();
@@ -116,7 +116,7 @@ fn a_click_finds_its_sample_and_the_worst_one_is_found() {
         ("output", [40.04, output]),
     ] {
         let found = ask(&mut session, near(picture, at)).unwrap();
-        assert_eq!(found["row"], 401, "{picture}");
+        assert_eq!(found["number"], 401, "{picture}");
     }
 }
 
