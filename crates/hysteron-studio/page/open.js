@@ -77,8 +77,8 @@ function card(file, overview, changed) {
     ...(isPath ? [] : file.doubts.map((doubt) => question(file, doubt, send))),
     file.problem && !isPath &&
       el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
-    file.repair && !isPath && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))), el("button", { class: "first", "data-key": `repair-${file.id}`, onclick: () => send("mend", { on: true }) }, "Repair rows"),
-      toRepair.length > 1 && el("button", { "data-key": `repair-all-${file.id}`, onclick: () => each(toRepair, "mend", { on: true }).then(changed) }, `The same for ${toRepair.length === 2 ? "both" : `all ${toRepair.length}`} files`)),
+    file.repair && !isPath && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))), el("div", { class: "row" }, el("button", { class: "first", "data-key": `repair-${file.id}`, onclick: () => send("mend", { on: true }) }, "Repair rows"),
+      toRepair.length > 1 && el("button", { "data-key": `repair-all-${file.id}`, onclick: () => each(toRepair, "mend", { on: true }).then(changed) }, `Repair ${toRepair.length === 2 ? "both" : `all ${toRepair.length}`} files`))),
     file.notes.length > 0 && el("ul", { class: "notes" }, ...file.notes.map((note) => el("li", {}, note))),
     segments(file),
     el("details", {}, el("summary", { class: "quiet" }, "Why these columns?"), el("ul", { class: "notes quiet" }, ...file.reasons.map((reason) => el("li", {}, reason)))),
