@@ -134,7 +134,8 @@ impl Fitted {
         }
     }
 
-    fn tested(&self) -> Option<&Errors> {
+    /// Its errors on what was held out.
+    pub(super) fn tested(&self) -> Option<&Errors> {
         let held_out = self.judged.held_out.as_ref();
         held_out.map(|held_out| &held_out.model)
     }

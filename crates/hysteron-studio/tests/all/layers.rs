@@ -212,3 +212,34 @@ fn the_archive_of_c_builds_and_runs() {
         }
     }
 }
+
+/// A fit that looks for what comes late is tested on the end, where that is like the rest: there it is
+/// drawn, with as many samples as were tested.
+#[test]
+fn an_end_that_was_held_out_is_drawn_at_the_end() {
+    let mut text = "time [s],T [degC],lift [mm]\n".to_owned();
+    let mut y = 20.0_f64;
+    for n in 0..900 {
+        let input = 50.0 - 30.0 * (f64::from(n) * 0.05).cos();
+        y = y.clamp(input - 4.0, input + 4.0);
+        text += &format!("{},{input},{}\n", f64::from(n) * 0.1, 0.2 * y);
+    }
+    let mut session = Session::new(1 << 28);
+    let file = session.open("a.csv", text.into()).unwrap();
+    let options = json!({"levels": "8", "bootstrap": "0"});
+    let fit = json!({"request": "fit", "options": options});
+    let fit = ask(&mut session, fit).unwrap();
+    let view = json!({"request": "curves", "file": file, "fits": [fit], "picture": "output",
+        "of": fit, "pixels": [600, 400]});
+    let seen = ask(&mut session, view).unwrap();
+    let overview = ask(&mut session, json!({"request": "overview"})).unwrap();
+    let fitted = &overview["fits"][0];
+    let tested = fitted["held_out"]["model"]["samples"].as_f64().unwrap();
+    assert_eq!(fitted["hold_out"], "branches:20%");
+    let held: Vec<[f64; 2]> = serde_json::from_value(seen["held"].clone()).unwrap();
+    let [[from, to]] = held[..] else {
+        panic!("{held:?}")
+    };
+    assert!((to - 89.9).abs() < 1e-9, "{to}");
+    assert_eq!(((to - from) * 10.0).round() + 1.0, tested);
+}
