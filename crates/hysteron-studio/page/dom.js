@@ -65,6 +65,15 @@ export function fill(node, ...children) {
 }
 
 /**
+ * Which sample of a file it is, and where it stands there.
+ * @param {{number: number, place: string | null}} sample
+ */
+export const which = ({ number, place }) => `sample ${number}${place ? ` (${place} of the file)` : ""}`;
+
+/** @param {string} text */
+export const capital = (text) => `${text[0].toUpperCase()}${text.slice(1)}`;
+
+/**
  * The unit in the name of a column, with a space before it; empty without one.
  * @param {string | null | undefined} column
  */

@@ -1,9 +1,10 @@
 // A model driven by hand: move the input, or pull the output and let the inverse answer.
 
-import { ask } from "./api.js";
-import { by, el, fill, shown, unit } from "./dom.js";
+import { ask, take } from "./api.js";
+import { by, el, fill, save, shown, unit } from "./dom.js";
 import { draw, ink, stroke } from "./plot.js";
 import * as hand from "./hand.js";
+import * as path from "./path.js";
 import { isOpen } from "./task.js";
 
 const STATUS = /** @type {Record<string, string>} */ ({ ok: "reached", low: "below every output of the model", high: "above every output of the model", passed: "inside a jump of the model", limited: "not in this time step: the drive is at its end" });
@@ -11,8 +12,15 @@ const STATUS = /** @type {Record<string, string>} */ ({ ok: "reached", low: "bel
 /** Until the user chooses a fit or moves one, it is the best. @type {{fit: number|null, chosen: boolean, loop: any, view: any, policy: string, waiting: object|null, busy: boolean, names: any}} */
 const now = { fit: null, chosen: false, loop: null, view: null, policy: "hold", waiting: null, busy: false, names: null };
 
-/** @param {import("./api.js").Overview} overview */
-export async function show(overview) {
+/** @type {(overview: any) => void} */
+let changed = () => {};
+
+/** What the form is built for. @param {import("./api.js").Overview} overview */
+const names = ({ fits, files }) => JSON.stringify([fits.length, files.map(({ id, name, purpose, columns }) => [id, name, purpose, columns.length])]);
+
+/** @param {import("./api.js").Overview} overview @param {(overview: any) => void} tell */
+export async function show(overview, tell) {
+  changed = tell;
   if (overview.fits.length === 0) return void (now.fit = null);
   if (!isOpen("drive")) return;
   const gone = !overview.fits.some((fit) => fit.id === now.fit);
@@ -20,7 +28,7 @@ export async function show(overview) {
     now.chosen = false;
     now.fit = overview.best ?? overview.fits[0].id;
     await begin(overview);
-  } else if (now.names !== overview.fits.length) await build(overview);
+  } else if (now.names !== names(overview)) await build(overview);
   // The colours of the page may have changed.
   else if (now.view) await answer(null);
 }
@@ -37,7 +45,7 @@ async function begin(overview) {
 
 /** @param {import("./api.js").Overview} overview */
 async function build(overview) {
-  now.names = overview.fits.length;
+  now.names = names(overview);
   const fit = overview.fits.find((fit) => fit.id === now.fit);
   if (!fit || !now.view) return;
   const slider = (/** @type {"input"|"output"} */ what, /** @type {string} */ text, /** @type {[number, number]} */ [low, high]) => {
@@ -66,6 +74,9 @@ async function build(overview) {
           el("option", { value: "anticipate", selected: now.policy === "anticipate" }, "anticipate: cross the dead band at once")))
       : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
     hand.form(fit.inverse, (what) => move(what), () => now.view),
+    path.form(overview, fit, (what) => move(what), (found) => (found === overview ? build(overview) : changed(found))),
+    el("p", { id: "drive-path", role: "status" }),
+    el("button", { id: "drive-way", "data-key": "drive-way", hidden: true, onclick: () => take({ what: "way", drive: now.view.drive }).then(save, () => {}) }, "What came of the path (CSV)"),
     number("dt", "Time step [s]"), number("load", "Load"),
   );
   await answer(fit);
@@ -73,8 +84,8 @@ async function build(overview) {
 
 /** Sends the latest move only: a hand is faster than any answer. @param {object} what */
 async function move(what) {
-  const isPath = "inputs" in what || "outputs" in what;
-  if (!isPath && now.waiting && ("inputs" in now.waiting || "outputs" in now.waiting)) return;
+  const isPath = (/** @type {object} */ what) => ["inputs", "outputs", "file"].some((name) => name in what);
+  if (!isPath(what) && now.waiting && isPath(now.waiting)) return;
   now.waiting = what;
   now.chosen = true;
   if (now.busy) return;
@@ -83,7 +94,7 @@ async function move(what) {
     const next = now.waiting;
     now.waiting = null;
     const value = (/** @type {string} */ id) => { const node = /** @type {any} */ (document.getElementById(id)); return node ? Number(node.value) : null; };
-    const view = await ask("pull", { drive: now.view.drive, policy: now.policy, dt: value("drive-dt"), load: value("drive-load"), ...next }).catch(() => null);
+    const view = await ask("file" in next ? "follow" : "pull", { drive: now.view.drive, policy: now.policy, dt: value("drive-dt"), load: value("drive-load"), ...next }).catch(() => null);
     if (view) {
       now.view = view;
       await answer(null);
@@ -92,13 +103,21 @@ async function move(what) {
   now.busy = false;
 }
 
+/** What came of a path, in words. @param {{of: string, samples: number, missed: [string, number][]}} followed */
+function came({ of, samples, missed }) {
+  if (of === "inputs") return `${samples} inputs were followed.`;
+  const none = missed.reduce((sum, [, n]) => sum + n, 0);
+  const why = missed.map(([status, n]) => `${n} ${STATUS[status]}`).join(", ");
+  return none ? `Of ${samples} outputs wanted ${samples - none} were reached. The others: ${why}.` : `All ${samples} outputs wanted were reached.`;
+}
+
 /** @type {any} */
 let known = null;
 
 /** @param {any} fit */
 async function answer(fit) {
   known = fit ?? known;
-  const { input, output, wanted, status, rival, moves, dead_band: band, trail, inputs, outputs } = now.view;
+  const { input, output, wanted, status, rival, moves, dead_band: band, trail, inputs, outputs, followed } = now.view;
   const active = document.activeElement?.id;
   for (const [id, value] of [["drive-input", input], ["drive-output", output]]) {
     if (active !== id) by(id).value = String(value);
@@ -111,6 +130,8 @@ async function answer(fit) {
   if (wanted !== null) parts.push(`Wanted ${shown(wanted)}${to}: ${STATUS[status] ?? status}.`);
   if (rival) parts.push(`Input with “${now.policy}”: ${shown(input)}${of}, with “${rival.policy}”: ${shown(rival.input)}${of}.`);
   if (band) parts.push(`Dead band: ${shown(band[0])} to ${shown(band[1])}${of}.`);
+  by("drive-way").hidden = !followed;
+  by("drive-path").textContent = followed ? came(followed) : "";
   by("drive-status").textContent = parts.join(" ") || "Move a slider: with the mouse, or with the arrow keys.";
   const traces = [
     ...(now.loop ? [{ x: now.loop.x, y: now.loop.y, mode: "lines", name: "measured", line: { ...stroke(null), width: 1 }, opacity: 0.45, showlegend: false, hoverinfo: "skip" }] : []),

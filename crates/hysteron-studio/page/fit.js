@@ -1,7 +1,7 @@
 // Fits: options with their meaning, work under way, the list.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown, unit } from "./dom.js";
+import { by, capital, el, fill, shown, unit, which } from "./dom.js";
 import * as look from "./look.js";
 import { colour } from "./plot.js";
 
@@ -48,7 +48,7 @@ function build(options) {
 /** @param {string} text */
 const sentence = (text) => {
   const plain = text.replaceAll("`", "");
-  return `${plain[0].toUpperCase()}${plain.slice(1)}.`;
+  return `${capital(plain)}.`;
 };
 
 /** @param {HTMLFormElement} form */
@@ -88,8 +88,11 @@ export function working(jobs) {
 /** Verdicts that were opened or closed, by fit. @type {Map<number, boolean>} */
 const told = new Map();
 
-/** The verdict has these as numbers. */
-const NUMBERS = new Set(["verdict", "error", "inverse"]);
+/** The card has these otherwise. */
+const NUMBERS = new Set(["verdict", "error", "inverse", "worst"]);
+
+/** The worst samples that were shown, in words, by fit. @type {{of: any, words: Map<number, string>}} */
+const worsts = { of: null, words: new Map() };
 
 /**
  * Shows the list of fits.
@@ -105,6 +108,7 @@ export function show(overview, drawn, draw, changed) {
   for (const id of ["begin", "fit-now"]) by(id).disabled = nothing;
   by("fit-now").textContent = overview.fits.length > 0 ? "Fit again" : "Fit";
   if (overview.fits.length === 0) return fill(by("fits"), nothing ? null : el("p", { class: "quiet" }, "None yet. The defaults suit most recordings; “Fit” above has the options."));
+  if (worsts.of !== overview) Object.assign(worsts, { of: overview, words: new Map() });
   const last = overview.fits.length - 1;
   fill(
     by("fits"),
@@ -136,7 +140,8 @@ function card(overview, fit, place, { isOpen, drawn, draw, changed }) {
       best && el("span", { class: "badge", title: `By ${overview.best_by}` }, "best"),
       grade && el("span", { class: `grade ${grade.split(" ")[0]}` }, grade),
       el("button", { class: "plain", "aria-label": `Remove fit ${place + 1}`, title: "Remove", onclick: () => ask("forget", { fit: fit.id }).then(changed, () => {}) }, "✕")),
-    meaning && el("p", {}, `${meaning[0].toUpperCase()}${meaning.slice(1)}.`),
+    stale(overview, fit, changed),
+    meaning && el("p", {}, `${capital(meaning)}.`),
     el("table", { class: "errors" }, el("tbody", {},
       error("held out", fit.held_out?.model, fit.output),
       rival && error(wins ? `${rival.name} is better` : rival.name, rival, fit.output, wins ? "worse" : "quiet"),
@@ -147,13 +152,40 @@ function card(overview, fit, place, { isOpen, drawn, draw, changed }) {
     el("details", { open: isOpen, ontoggle: (/** @type {any} */ e) => told.set(fit.id, e.target.open) },
       el("summary", {}, "Why, and what next"),
       el("dl", { class: "verdict" }, ...fit.verdict.filter(([heading]) => !NUMBERS.has(heading)).flatMap(([heading, text]) => [el("dt", {}, heading), el("dd", {}, text)])),
-      el("p", { class: "quiet" }, `${fit.levels} levels, ${options}. Held out: ${fit.hold_out.replace("files", "other files") || "nothing"}.`)),
-    el("button", { class: "chip", "data-key": `worst-${fit.id}`, onclick: () => worst(fit) }, "Show the worst sample"),
+      el("p", { class: "quiet" }, `${fit.levels} levels, ${options}. Held out: ${fit.hold_out.replace("files", "other files").replace("rows:", "samples ") || "nothing"}.`)),
+    el("button", { class: "chip", "data-key": `worst-${fit.id}`, onclick: () => worst(overview, fit) }, "Show the worst sample"),
+    el("p", { class: "quiet", role: "status", "data-worst": fit.id }, worsts.words.get(fit.id) ?? ""),
   );
 }
 
-/** Points at the sample with the largest residual. @param {import("./api.js").Fit} fit */
-async function worst(fit) {
+/**
+ * Says that files have changed since a fit, and offers its errors anew.
+ * @param {import("./api.js").Overview} overview
+ * @param {import("./api.js").Fit} fit
+ * @param {(overview: any) => void} changed
+ */
+function stale(overview, fit, changed) {
+  if (fit.changed.length === 0) return null;
+  const names = overview.files.filter((file) => fit.changed.includes(file.id)).map((file) => file.name);
+  const anew = async () => {
+    // Fits are compared where they had the same test.
+    for (const { id } of overview.fits.filter((fit) => fit.can_be_judged_anew)) await ask("judge_anew", { fit: id }).catch(() => {});
+    changed(await ask("overview"));
+  };
+  return el("div", { class: "warn" },
+    el("p", {}, `${names.join(", ")} ${names.length === 1 ? "has" : "have"} changed since: the errors are of before.${fit.can_be_judged_anew ? "" : " “Fit again” makes a fit to what it is now."}`),
+    fit.can_be_judged_anew && el("button", { "data-key": `anew-${fit.id}`, onclick: anew }, "Compute the errors anew"));
+}
+
+/** Points at the sample with the largest residual. @param {import("./api.js").Overview} overview @param {import("./api.js").Fit} fit */
+async function worst(overview, fit) {
   const found = await ask("worst", { fit: fit.id }).catch(() => null);
-  if (found) look.point(found.file, found.sample.time);
+  if (!found) return;
+  const file = overview.files.find(({ id }) => id === found.file);
+  const { output, modelled } = found.sample;
+  const words = `${file?.name}, ${which(found.sample)}: off by ${shown(modelled[0]?.[1] - output)}${unit(fit.output)}.`;
+  worsts.words.set(fit.id, words);
+  await look.point(found.file, found.sample.time);
+  const place = document.querySelector(`[data-worst="${fit.id}"]`);
+  if (place) place.textContent = words;
 }

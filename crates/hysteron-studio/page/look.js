@@ -100,7 +100,8 @@ export function show(overview, drawn, changed) {
   if (files.length === 0) return void (now.file = null);
   if (!files.some((file) => file.id === now.file)) Object.assign(now, { file: files[0].id, window: null, area: ALL, whole: null });
   tools();
-  for (const node of document.querySelectorAll(".fitted")) /** @type {HTMLElement} */ (node).hidden = now.drawn.size === 0;
+  for (const node of document.querySelectorAll(".fitted")) if (now.drawn.size === 0) /** @type {HTMLElement} */ (node).hidden = true;
+  by("figure-plane").hidden = now.drawn.size === 0;
   return redraw();
 }
 
@@ -159,6 +160,15 @@ async function picture([band, id], mine) {
   const node = by(/** @type {any} */ (id));
   const curves = /** @type {import("./api.js").Curves} */ (await ask("curves", view(band)).catch(() => null));
   if (!curves || mine !== now.asked) return;
+  // Where no fit can be run on this file, axes would be empty.
+  const figure = /** @type {HTMLElement} */ (node.closest("figure"));
+  if (figure.classList.contains("fitted")) {
+    const was = figure.hidden;
+    figure.hidden = curves.lines.length === 0;
+    if (figure.hidden) return;
+    // What it can show is known once it has its size.
+    if (was) return picture([band, id], mine);
+  }
   const place = (/** @type {number|null} */ id) => now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id);
   const lines = curves.lines.map(({ fit, raw, x, y }) => ({
     x, y,

@@ -52,7 +52,7 @@ async function tasks() {
   if (!overview) return;
   preparing.show(overview, show);
   splitting.show(overview, show);
-  await driving.show(overview);
+  await driving.show(overview, show);
   await designing.show(overview);
   await home.show(overview);
 }

@@ -4,9 +4,10 @@ import { ask, open } from "./api.js";
 import { by, el, fill, shown } from "./dom.js";
 import * as look from "./look.js";
 import * as task from "./task.js";
+import { each } from "./alike.js";
 
 const ROLES = [["", "not used"], ["input", "input"], ["output", "output"], ["time", "time"], ["load", "load"]];
-const PURPOSES = [["fit", "to fit"], ["validate", "for validation"], ["look", "only to look at"]];
+const PURPOSES = [["fit", "to fit"], ["validate", "for validation"], ["look", "only to look at"], ["path", "a path for “Drive”"]];
 /** More columns than these are folded away, but for those that are used. */
 const FEW = 5;
 
@@ -42,14 +43,15 @@ export function start(opened) {
  */
 export function show(overview, changed) {
   by("drop").classList.toggle("empty", overview.files.length === 0);
-  fill(by("files"), ...overview.files.map((file) => card(file, changed)));
+  fill(by("files"), ...overview.files.map((file) => card(file, overview, changed)));
 }
 
 /**
  * @param {import("./api.js").File} file
+ * @param {import("./api.js").Overview} overview
  * @param {(overview: any) => void} changed
  */
-function card(file, changed) {
+function card(file, overview, changed) {
   const send = (/** @type {string} */ request, more = {}) => ask(request, { file: file.id, ...more }).then(changed, () => {});
   const purpose = el(
     "select",
@@ -60,6 +62,9 @@ function card(file, changed) {
   const isShown = !file.problem && look.isShown(file.id);
   const name = file.problem ? file.name : el("button", { class: "plain", "data-key": `show-${file.id}`, "aria-pressed": String(isShown), title: "Show this file in the pictures", onclick: () => look.choose(file.id) }, file.name);
   const isUsed = (/** @type {import("./api.js").Column} */ column) => Object.values(file.roles).includes(column.name);
+  // A path need not be a recording.
+  const isPath = file.purpose === "path" && file.problem !== null;
+  const toRepair = overview.files.filter((other) => other.repair && other.purpose !== "path");
   const first = file.columns.filter((column, n) => file.columns.length <= FEW || isUsed(column) || (file.doubts.length > 0 && n < FEW));
   const others = file.columns.filter((column) => !first.includes(column));
   return el(
@@ -69,10 +74,11 @@ function card(file, changed) {
     el("div", { class: "quiet" }, facts, file.steps && ", prepared"),
     el("div", { class: "columns" }, ...first.map((column) => columnRow(file, column, send))),
     others.length > 0 && el("details", {}, el("summary", { class: "quiet" }, `${others.length} more ${others.length === 1 ? "column" : "columns"}`), el("div", { class: "columns" }, ...others.map((column) => columnRow(file, column, send)))),
-    ...file.doubts.map((doubt) => question(file, doubt, send)),
-    file.problem &&
+    ...(isPath ? [] : file.doubts.map((doubt) => question(file, doubt, send))),
+    file.problem && !isPath &&
       el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
-    file.repair && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))), el("button", { class: "first", "data-key": `repair-${file.id}`, onclick: () => send("mend", { on: true }) }, "Repair rows")),
+    file.repair && !isPath && el("div", {}, el("p", {}, `After “Repair rows” ${file.repair.samples} samples are left of ${file.rows} rows:`), el("ul", { class: "notes" }, ...file.repair.notes.map((note) => el("li", {}, note))), el("div", { class: "row" }, el("button", { class: "first", "data-key": `repair-${file.id}`, onclick: () => send("mend", { on: true }) }, "Repair rows"),
+      toRepair.length > 1 && el("button", { "data-key": `repair-all-${file.id}`, onclick: () => each(toRepair, "mend", { on: true }).then(changed) }, `Repair ${toRepair.length === 2 ? "both" : `all ${toRepair.length}`} files`))),
     file.notes.length > 0 && el("ul", { class: "notes" }, ...file.notes.map((note) => el("li", {}, note))),
     segments(file),
     el("details", {}, el("summary", { class: "quiet" }, "Why these columns?"), el("ul", { class: "notes quiet" }, ...file.reasons.map((reason) => el("li", {}, reason)))),
@@ -91,7 +97,7 @@ function segments(file) {
   if (file.begins.length < 2) return null;
   const end = (/** @type {number} */ n) => (file.begins[n + 1] ?? file.samples + 1) - 1;
   const one = (/** @type {number} */ begin, /** @type {number} */ n) =>
-    el("button", { class: "chip", "data-key": `segment-${file.id}-${n}`, title: `Rows ${begin} to ${end(n)}`, "aria-label": `Show recording ${n + 1}, rows ${begin} to ${end(n)}`, onclick: () => look.choose(file.id, file.spans[n]) }, String(n + 1));
+    el("button", { class: "chip", "data-key": `segment-${file.id}-${n}`, title: `Samples ${begin} to ${end(n)}`, "aria-label": `Show recording ${n + 1}, samples ${begin} to ${end(n)}`, onclick: () => look.choose(file.id, file.spans[n]) }, String(n + 1));
   const all = file.begins.map(one);
   return el("div", { class: "row segments", role: "group", "aria-label": `Recordings of ${file.name}` }, el("span", { class: "quiet" }, `${all.length} recordings:`), ...all.slice(0, 24), all.length > 24 && el("span", { class: "quiet" }, "…"));
 }

@@ -1,13 +1,13 @@
 // The plane of operators of one fit: weights, how well they are known, and their states at a sample.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown, unit } from "./dom.js";
+import { by, el, fill, shown, unit, which } from "./dom.js";
 import { draw, on, plain, roundest, rounds } from "./plot.js";
 
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
 export const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
 
-/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null, file: number|null, followed: {row: number, words: string}|null}} */
+/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null, file: number|null, followed: {number: number, words: string}|null}} */
 const now = { kind: "weights", fit: null, chosen: false, at: null, file: null, followed: null };
 
 /** Shows the states of the operators from now on. */
@@ -38,8 +38,13 @@ async function follow(levels, alpha, beta) {
   const here = now.at?.[0] === now.file ? now.at[1] : null;
   const sample = await ask("switch", { fit: now.fit, file: now.file, operator: [alpha + 1, beta + 1], after: here }).catch(() => null);
   if (!sample) return;
+  const operator = `The operator that was clicked, on at ${shown(levels[beta])} and off at ${shown(levels[alpha])},`;
+  if (sample.response === "never") {
+    by("plane-text").textContent = `${operator} never switches in this file. Click a cell that the staircase passes.`;
+    return;
+  }
   now.kind = "states";
-  now.followed = { row: sample.row, words: `The operator that was clicked, on at ${shown(levels[beta])} and off at ${shown(levels[alpha])}, switches at row ${sample.row}. ` };
+  now.followed = { number: sample.number, words: `${operator} switches at ${which(sample)}. ` };
   chosen(sample.time);
 }
 
@@ -130,7 +135,7 @@ export async function show(overview, drawn, file = now.file) {
     if (z !== null && !seen.left_out) follow(seen.levels, Number(x), Number(y));
   });
   by("plane-text").textContent = seen.sample
-    ? `${now.followed?.row === seen.sample.row ? now.followed?.words : ""}The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
+    ? `${now.followed?.number === seen.sample.number ? now.followed?.words : ""}The line is the staircase at ${which(seen.sample)}: its corners are the turning points that the model remembers. Below it operators are on, above it off. Click a cell for the next sample at which it switches.`
     : seen.left_out ? `There is no staircase: fit ${overview.fits.findIndex((/** @type {any} */ fit) => fit.id === now.fit) + 1} cannot be run on this file.`
     : "One cell for each operator, which switches on at β and off at α. Click a cell for the sample at which it switches, or a sample for its staircase.";
 }

@@ -1,7 +1,7 @@
 // The sample pointed at: its mark in every view, and a play through the time.
 
 import { ask } from "./api.js";
-import { by, el, fill, shown, unit } from "./dom.js";
+import { by, capital, el, fill, shown, unit, which } from "./dom.js";
 import * as plane from "./plane.js";
 import { mark } from "./plot.js";
 
@@ -9,7 +9,7 @@ const OVER_TIME = ["plot-output", "plot-input", "plot-residuals"];
 /** A play takes so many seconds for the part that is shown. */
 const SPEEDS = [60, 20, 8, 3];
 
-/** @typedef {{row: number, time: number, input: number, output: number, modelled: [number, number][]}} Sample */
+/** @typedef {{number: number, place: string|null, time: number, input: number, output: number, modelled: [number, number][]}} Sample */
 
 /** @type {{file: number|null, range: [number, number], at: number|null, sample: Sample|null, overview: any, drawn: Set<number>, seconds: number, timer: number, waiting: boolean, busy: boolean, steps: number}} */
 const now = { file: null, range: [0, 1], at: null, sample: null, overview: null, drawn: new Set(), seconds: 20, timer: 0, waiting: false, busy: false, steps: 1 };
@@ -29,7 +29,7 @@ export function of(file) {
  */
 export function show(overview, drawn, file, range, samples) {
   of(file);
-  // After a preparation or another fit the same time may be another row and value.
+  // After a preparation or another fit the same time may be another sample and value.
   const stale = now.at !== null && now.overview !== null && now.overview !== overview;
   Object.assign(now, { overview, drawn, range, steps: Math.max(1, samples) });
   if (stale) to(/** @type {number} */ (now.at));
@@ -46,11 +46,13 @@ export function show(overview, drawn, file, range, samples) {
 
 const words = () => {
   if (!now.sample) return "Click a sample in any picture. Space plays, arrow keys move.";
-  const { row, time, input, output, modelled } = now.sample;
+  const { time, input, output, modelled } = now.sample;
   const file = now.overview.files.find((/** @type {any} */ file) => file.id === now.file);
   const of = unit(file?.output);
   const fits = modelled.map(([id, value]) => `, fit ${now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id) + 1}: ${shown(value)}${of} (off by ${shown(value - output)})`);
-  return `Row ${row}${file?.roles.time ? `, at ${shown(time)} s` : ""}: input ${shown(input)}${unit(file?.input)}, measured ${shown(output)}${of}${fits.join("")}`;
+  // Of several files one might be taken for another.
+  const name = now.overview.files.length > 1 && file ? `${file.name}, ${which(now.sample)}` : capital(which(now.sample));
+  return `${name}${file?.roles.time ? `, at ${shown(time)} s` : ""}: input ${shown(input)}${unit(file?.input)}, measured ${shown(output)}${of}${fits.join("")}`;
 };
 
 /** Starts a play, or pauses it. */

@@ -3,6 +3,7 @@
 import { ask } from "./api.js";
 import { by, el, fill, shown, unit } from "./dom.js";
 import * as look from "./look.js";
+import { each } from "./alike.js";
 
 const STEPS = [
   ["spikes", "spikes", "Spikes and bursts. A number: deviations from which on a sample is a spike."],
@@ -29,6 +30,7 @@ export function show(overview, changed) {
     typed.delete(file.id);
     changed(found);
   }, () => {});
+  const others = file.steps ? overview.files.filter((other) => other.id !== file.id && !other.problem && !same(other.steps, file.steps)) : [];
   const field = (/** @type {string[]} */ [name, title, meaning]) =>
     el("label", { class: "field" }, el("span", {}, title), el("input", { name, type: "text", value: /** @type {any} */ (steps)[name], list: "steps", autocomplete: "off", required: true, "data-key": `step-${name}`, oninput: (/** @type {any} */ e) => typed.set(file.id, { ...typed.get(file.id), [name]: e.target.value }) }), el("small", {}, meaning));
   const submit = (/** @type {any} */ event) => {
@@ -38,7 +40,8 @@ export function show(overview, changed) {
   fill(
     by("prepare"),
     el("p", {}, el("strong", {}, file.name), file.steps ? " is prepared. Fits take what is prepared." : " is as it was read."),
-    ...file.preparation.map((done) => report(done, file)),
+    others.length > 0 ? el("button", { type: "button", "data-key": `prepare-others-${file.id}`, onclick: () => each(others, "prepare", { steps: file.steps }).then(changed) }, `The same for ${others.length === 1 ? others[0].name : `the ${others.length} other files`}`) : null,
+    ...file.preparation.map((done, n) => report(done, file, file.prepared_at[n] ?? [[], []])),
     el("form", { onsubmit: submit },
       el("div", { class: "row" },
         el("button", { class: "first", "data-key": `prepare-${file.id}` }, file.steps ? "Prepare again" : "Prepare"),
@@ -48,20 +51,24 @@ export function show(overview, changed) {
   );
 }
 
+/** @param {any} one @param {any} other */
+const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+
 /**
  * What a preparation did, in numbers.
  * @param {any} done
  * @param {import("./api.js").File} file
+ * @param {[string[], string[]]} places of what was repaired of input and output
  */
-function report({ samples_before, samples, input_noise, output_noise, spikes, resampled, low_pass, lag, dead_band, judged }, file) {
+function report({ samples_before, samples, input_noise, output_noise, spikes, resampled, low_pass, lag, dead_band, judged }, file, places) {
   const [input, output] = [unit(file.input), unit(file.output)];
-  const of = (/** @type {any} */ repairs) => `${repairs.spikes} spikes, ${repairs.signs} lost signs${repairs.first.length > 0 ? ` (rows ${repairs.first.join(", ")}${repairs.spikes + repairs.signs > repairs.first.length ? ", …" : ""})` : ""}`;
+  const of = (/** @type {any} */ repairs, /** @type {string[]} */ at) => `${repairs.spikes} spikes, ${repairs.signs} lost signs${at.length > 0 ? ` (${at.join(", ")}${repairs.spikes + repairs.signs > at.length ? ", …" : ""} of the file)` : ""}`;
   const filter = (/** @type {any} */ one, /** @type {string} */ of) => (one ? `cut-off ${shown(one.cutoff)} ${low_pass.in_hertz ? "Hz" : "cycles a sample"}, removed ${shown(one.removed)}${of} (root mean square)` : "not needed");
   const rows = [
     ["Samples", samples === samples_before ? String(samples) : `${samples_before} before, ${samples} after`],
     ["Noise of the input, of the output", `${shown(input_noise)}${input}, ${shown(output_noise)}${output} (standard deviation)`],
-    ["Spikes of the input", spikes && of(spikes.input)],
-    ["Spikes of the output", spikes && of(spikes.output)],
+    ["Spikes of the input", spikes && of(spikes.input, places[0])],
+    ["Spikes of the output", spikes && of(spikes.output, places[1])],
     ["Low-pass of the input", low_pass && filter(low_pass.input, input)],
     ["Low-pass of the output", low_pass && filter(low_pass.output, output)],
     ["False reversals of the input", dead_band && `${dead_band.false_reversals} removed up to ${shown(dead_band.size)}${input}: ${dead_band.samples_changed} samples changed by at most ${shown(dead_band.largest_change)}${input}`],

@@ -47,7 +47,7 @@ function spans(file, send) {
   return el("div", {},
     el("h3", {}, `Spans of ${file.name}`),
     file.purpose === "validate" && el("p", { class: "quiet" }, "All of this file is held out."),
-    el("ul", { class: "plain" }, ...file.marked.map(([a, b], n) => el("li", {}, `rows ${a} to ${b} `, el("button", { class: "chip", "data-key": `unmark-${n}`, "aria-label": `Fit rows ${a} to ${b} again`, onclick: () => remove(n) }, "Remove the mark")))),
+    el("ul", { class: "plain" }, ...file.marked.map(([a, b], n) => el("li", {}, `samples ${a} to ${b} `, el("button", { class: "chip", "data-key": `unmark-${n}`, "aria-label": `Fit samples ${a} to ${b} again`, onclick: () => remove(n) }, "Remove the mark")))),
     el("button", { "data-key": "mark", "aria-pressed": String(look.isMarking()), onclick: () => look.marks() }, look.isMarking() ? "Drag over the output…" : file.marked.length > 0 ? "Mark another span" : "Mark a span"),
-    el("form", { class: "row ends", onsubmit: submit }, number("first", "or from row"), number("last", "to row"), el("button", {}, "Mark")));
+    el("form", { class: "row ends", onsubmit: submit }, number("first", "or from sample"), number("last", "to sample"), el("button", {}, "Mark")));
 }

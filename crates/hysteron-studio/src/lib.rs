@@ -20,7 +20,7 @@ pub use page::{PageFile, STATIC_SESSION, static_page};
 pub use server::Server;
 pub use session::{
     Answer, Area, ColumnView, Curves, DesignView, Download, DriveView, Ends, Fault, FileView,
-    Finished, FitView, Held, Id, Job, JobView, Layers, Line, Overview, Part, Picture, PlaneKind,
-    PlaneView, Pull, Purpose, RepairView, Request, Response, RivalView, SampleView, Session, Steps,
-    Take, Told, View, Wish, WorstView,
+    Finished, FitView, Follow, FollowedView, Held, Id, Job, JobView, Layers, Line, Overview, Part,
+    Picture, PlaneKind, PlaneView, Pull, Purpose, RepairView, Request, Response, RivalView,
+    SampleView, Session, Side, Steps, Take, Told, View, Wish, WorstView,
 };

@@ -46,6 +46,8 @@ const SHARED: &[File] = files![
     "design.js" as SCRIPT,
     "prepare.js" as SCRIPT,
     "hand.js" as SCRIPT,
+    "path.js" as SCRIPT,
+    "alike.js" as SCRIPT,
     "home.js" as SCRIPT,
     "plot.js" as SCRIPT,
     "theme.js" as SCRIPT,

@@ -23,6 +23,7 @@ struct CarriedJob {
     others: Vec<CarriedRecording>,
     words: String,
     validated: Vec<Id>,
+    samples: BTreeMap<Id, u64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -71,6 +72,7 @@ impl Job {
             others: others.map(CarriedRecording::new).collect(),
             words: self.words.clone(),
             validated: self.validated.clone(),
+            samples: self.samples.clone(),
         };
         serde_json::to_vec(&carried).unwrap_or_default()
     }
@@ -97,6 +99,7 @@ impl Job {
             hold_out: HoldOut::together(part, recordings(job.others)?),
             words: job.words,
             validated: job.validated,
+            samples: job.samples,
             watch: Arc::new(Watch::default()),
         })
     }

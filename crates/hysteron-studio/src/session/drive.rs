@@ -5,7 +5,8 @@
 use super::fault::Fault;
 use super::fitted::Fitted;
 use super::id::Id;
-use hysteron::{Direction, Model, Policy, Sample, State, Target, Wanted, headings};
+use super::path::{Followed, FollowedView, Path, Side};
+use hysteron::{Direction, Model, Policy, Sample, State, Target, Wanted};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -24,25 +25,27 @@ const PATH: usize = 4000;
 pub(super) struct Drive {
     pub(super) fit: Id,
     model: Arc<Model>,
-    dt: f64,
-    load: Option<f64>,
-    way: Way,
+    pub(super) dt: f64,
+    pub(super) load: Option<f64>,
+    pub(super) way: Way,
     /// The way of the other policy since the input was moved.
     rival: Option<(Policy, Way)>,
     wanted: Option<f64>,
     moves: Vec<[f64; 3]>,
+    /// The last path, until the model is moved otherwise.
+    pub(super) followed: Option<Arc<Followed>>,
     /// Inputs and outputs that the page offers.
     inputs: (f64, f64),
-    outputs: (f64, f64),
+    pub(super) outputs: (f64, f64),
 }
 
 /// A state, and how it came there.
 #[derive(Debug, Clone)]
-struct Way {
+pub(super) struct Way {
     state: State,
-    input: f64,
-    output: f64,
-    status: &'static str,
+    pub(super) input: f64,
+    pub(super) output: f64,
+    pub(super) status: &'static str,
     trail: Vec<[f64; 2]>,
 }
 
@@ -104,6 +107,8 @@ pub struct DriveView {
     pub dt: Option<f64>,
     /// The load, where the model depends on one.
     pub load: Option<f64>,
+    /// The path that led here.
+    pub followed: Option<FollowedView>,
 }
 
 /// The other policy of a drive.
@@ -166,6 +171,7 @@ impl Drive {
             rival: None,
             wanted: None,
             moves: Vec::new(),
+            followed: None,
             inputs: inputs(&model, fitted.input),
             outputs: stroke(&model).unwrap_or(fitted.output),
             model,
@@ -175,18 +181,30 @@ impl Drive {
         Ok(drive)
     }
 
+    pub(super) fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Takes a time step and a load, where they are given and the model depends on them.
+    pub(super) fn takes(&mut self, dt: Option<f64>, load: Option<f64>) {
+        self.dt = dt.unwrap_or(self.dt);
+        self.load = self.load.map(|before| load.unwrap_or(before));
+    }
+
     /// Moves the model. A path that is refused at its middle moves nothing.
     ///
     /// # Errors
     /// [`Fault`] for a move that cannot be.
     pub(super) fn moved(&mut self, pull: &Pull) -> Result<(), Fault> {
         let mut moved = self.clone();
-        if let Some(dt) = pull.dt {
-            moved.dt = dt;
-        }
-        if let (Some(load), Some(_)) = (pull.load, moved.load) {
-            moved.load = Some(load);
-        }
+        moved.takes(pull.dt, pull.load);
+        moved.followed = None;
+        let along = |of, values| Path {
+            of,
+            values,
+            time: None,
+            load: None,
+        };
         let path = pull.inputs.as_ref().or(pull.outputs.as_ref());
         if path.is_some_and(|path| path.len() > PATH || path.is_empty()) {
             return Err(Fault::missing(
@@ -198,17 +216,10 @@ impl Drive {
             (Some(input), None, None, None) => moved.push(input)?,
             (None, Some(output), None, None) => moved.pull(output, pull.policy, None)?,
             (None, None, Some(inputs), None) => {
-                for input in inputs {
-                    moved.push(*input)?;
-                }
+                moved.follow(&along(Side::Inputs, inputs), pull.policy, None)?;
             }
             (None, None, None, Some(outputs)) => {
-                // A hand does not draw smaller turns on purpose.
-                let still = 0.002 * (moved.outputs.1 - moved.outputs.0).abs();
-                let ahead = headings(outputs, still);
-                for (output, heading) in outputs.iter().zip(ahead) {
-                    moved.pull(*output, pull.policy, Some(heading))?;
-                }
+                moved.follow(&along(Side::Outputs, outputs), pull.policy, None)?;
             }
             _ => {
                 return Err(Fault::missing(
@@ -246,7 +257,7 @@ impl Drive {
         }
     }
 
-    fn push(&mut self, input: f64) -> Result<(), Fault> {
+    pub(super) fn push(&mut self, input: f64) -> Result<(), Fault> {
         self.way = self.pushed(&self.way, input)?;
         (self.wanted, self.rival) = (None, None);
         self.moves.clear();
@@ -278,7 +289,7 @@ impl Drive {
 
     /// Pulls the output with both policies. `ahead` is where the target goes next; without it, it
     /// is taken to go on as it came.
-    fn pull(
+    pub(super) fn pull(
         &mut self,
         wanted: f64,
         policy: Policy,
@@ -382,6 +393,7 @@ impl Drive {
             moves: self.moves.clone(),
             dead_band: self.dead_band(),
             trail: self.way.trail.clone(),
+            followed: self.followed.as_ref().map(|followed| followed.view()),
             inputs: self.inputs,
             outputs: self.outputs,
             dt: self.model.is_timed().then_some(self.dt),

@@ -42,6 +42,11 @@ impl Fault {
         )
     }
 
+    /// Whether it names something that is not open.
+    pub(crate) fn is_gone(&self) -> bool {
+        self.code == 100
+    }
+
     pub(crate) fn too_large(name: &str, left: u64) -> Self {
         let mib = left / (1 << 20);
         let problem = format!("{name} takes more memory than the {mib} MiB that are left");

@@ -5,7 +5,7 @@ use super::id::Id;
 use super::opened::{Opened, Part, Purpose, RepairView};
 use super::parts::Parts;
 use super::prepare::Steps;
-use hysteron::{ColumnSummary, Preparation, Quantity, Recording, RoleDoubt};
+use hysteron::{ColumnSummary, Preparation, Quantity, Recording, Repairs, RoleDoubt};
 use serde::Serialize;
 
 /// A column as the page shows it.
@@ -49,6 +49,8 @@ pub struct FileView {
     pub steps: Option<Steps>,
     /// What the preparation did, for each recording.
     pub preparation: Vec<Preparation>,
+    /// Where in the file the repaired samples of input and output stand that it lists.
+    pub prepared_at: Vec<[Vec<String>; 2]>,
     /// Whether rows are repaired.
     pub mend: bool,
     /// What it is for.
@@ -94,6 +96,26 @@ impl Opened {
         free.collect()
     }
 
+    /// The places of the samples that a preparation lists, which counts within each recording.
+    fn prepared_at(&self) -> Vec<[Vec<String>; 2]> {
+        let Some(raw) = self.raw() else {
+            return Vec::new();
+        };
+        let each = self.preparation.iter().zip(raw.begins());
+        let each = each.map(|(done, begin)| {
+            let places = |repairs: &Repairs| {
+                let samples = repairs.first.iter();
+                let places = samples.filter_map(|first| raw.place(begin + first - 1));
+                places.map(|place| place.to_string()).collect()
+            };
+            let spikes = done.spikes.as_ref();
+            spikes.map_or_else(Default::default, |of| {
+                [places(&of.input), places(&of.output)]
+            })
+        });
+        each.collect()
+    }
+
     pub(super) fn view(&self) -> FileView {
         let columns = self
             .preview
@@ -123,6 +145,7 @@ impl Opened {
             repair: self.repair.clone(),
             steps: self.steps.clone(),
             preparation: self.preparation.clone(),
+            prepared_at: self.prepared_at(),
             mend: self.mend,
             purpose: self.purpose,
             marked: self.marked.clone(),

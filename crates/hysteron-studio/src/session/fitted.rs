@@ -1,6 +1,8 @@
 //! What a fit found, and which fit is the best.
 
 use super::id::Id;
+use super::judged::Judged;
+use super::opened::Opened;
 use hysteron::{Budget, Errors, HeldOut, Model, Quantity, State};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -18,13 +20,10 @@ pub(super) struct Fitted {
     /// What was held out, in words.
     pub(super) words: String,
     pub(super) validated: Vec<Id>,
+    /// A number for the samples of each of these files, as the fit saw them.
+    pub(super) samples: BTreeMap<Id, u64>,
     pub(super) model: Arc<Model>,
-    pub(super) held_out: Option<HeldOut>,
-    /// The errors of the inverse on what was fitted, while the output moves.
-    pub(super) inverse: Option<Errors>,
-    pub(super) advice: Vec<String>,
-    /// Whether it is good enough: headings and sentences.
-    pub(super) verdict: Vec<(String, String)>,
+    pub(super) judged: Judged,
     /// Lowest and highest input and output of the recordings fitted.
     pub(super) input: (f64, f64),
     pub(super) output: (f64, f64),
@@ -84,10 +83,14 @@ pub struct FitView {
     pub outliers: usize,
     /// Whether standard errors are known.
     pub confidence: bool,
+    /// The files that have changed since: its errors are of before.
+    pub changed: Vec<Id>,
+    /// Whether its errors can be computed anew without another fit.
+    pub can_be_judged_anew: bool,
 }
 
 impl Fitted {
-    pub(super) fn view(&self) -> FitView {
+    pub(super) fn view(&self, files: &[Opened]) -> FitView {
         let model = &self.model;
         let fit = model.fit.as_ref();
         let shown = |quantity: &Quantity| quantity.to_column();
@@ -100,10 +103,10 @@ impl Fitted {
             rmse: fit.map_or(0.0, |fit| fit.rmse),
             nrmse_percent: fit.map_or(0.0, |fit| fit.nrmse_percent),
             max_abs: fit.map_or(0.0, |fit| fit.max_abs),
-            held_out: self.held_out.clone(),
-            inverse_errors: self.inverse,
-            advice: self.advice.clone(),
-            verdict: self.verdict.clone(),
+            held_out: self.judged.held_out.clone(),
+            inverse_errors: self.judged.inverse,
+            advice: self.judged.advice.clone(),
+            verdict: self.judged.verdict.clone(),
             inverse: model.inverse().is_ok(),
             timed: model.is_timed(),
             load: model.load.as_ref().map(hysteron::LoadDependence::range),
@@ -111,6 +114,8 @@ impl Fitted {
             output: shown(&model.output),
             outliers: fit.map_or(0, |fit| fit.outliers.len()),
             confidence: fit.is_some_and(|fit| fit.confidence.is_some()),
+            changed: self.changed(files),
+            can_be_judged_anew: self.can_be_judged_anew(files),
         }
     }
 
@@ -129,8 +134,10 @@ impl Fitted {
         }
     }
 
-    fn tested(&self) -> Option<&Errors> {
-        self.held_out.as_ref().map(|held_out| &held_out.model)
+    /// Its errors on what was held out.
+    pub(super) fn tested(&self) -> Option<&Errors> {
+        let held_out = self.judged.held_out.as_ref();
+        held_out.map(|held_out| &held_out.model)
     }
 }
 
@@ -144,7 +151,8 @@ pub(super) fn best(fits: &[Fitted]) -> (Option<Id>, &'static str) {
         .iter()
         .filter_map(|fit| Some((fit.tested()?.rmse, fit)));
     let Some((_, newest)) = tested.clone().next_back() else {
-        let mut fitted = fits.iter().map(|fit| (fit.view().rmse, fit.id));
+        let rmse = |fit: &Fitted| fit.model.fit.as_ref().map_or(0.0, |fit| fit.rmse);
+        let mut fitted = fits.iter().map(|fit| (rmse(fit), fit.id));
         let by = "the smallest error of the fit: nothing was held out";
         return (least(&mut fitted), by);
     };

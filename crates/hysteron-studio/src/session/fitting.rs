@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::id::Id;
 use super::job::{Finished, Job, JobView, Watch, build};
-use super::opened::Purpose;
+use super::opened::{Opened, Purpose};
 use super::parts::numbers_of;
 use super::state::{MOST, Running, Session};
 use hysteron::HoldOut;
@@ -115,7 +115,10 @@ impl Session {
                 }
             }
         };
-        let fitted = of(Purpose::Fit).map(|file| file.id).collect();
+        let fitted: Vec<Id> = of(Purpose::Fit).map(|file| file.id).collect();
+        let of_fit = |file: &&Opened| fitted.contains(&file.id) || validated.contains(&file.id);
+        let samples = self.files.iter().filter(of_fit);
+        let samples = samples.map(|file| (file.id, file.samples)).collect();
         let others = hold_out.iter().flat_map(HoldOut::recordings);
         let bytes = recordings.iter().chain(others);
         let bytes = bytes.map(numbers_of).sum();
@@ -136,6 +139,7 @@ impl Session {
             hold_out,
             words,
             validated,
+            samples,
             watch,
         };
         Ok((started, job))

@@ -2,7 +2,7 @@
 
 use super::drive::Drive;
 use super::fault::Fault;
-use super::fitted::{self, Fitted};
+use super::fitted;
 use super::id::Id;
 use super::job::Job;
 use super::opened::{self, Opened};
@@ -90,6 +90,14 @@ impl Session {
     /// # Errors
     /// [`Fault`], with a code for each kind. The session is then as before.
     pub fn handle(&mut self, request: Request) -> Result<Answer, Fault> {
+        let draws = request.draws();
+        match self.answer(request) {
+            Err(fault) if draws && fault.is_gone() => Ok(Response::Gone.into()),
+            answer => answer,
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Result<Answer, Fault> {
         match request {
             Request::Overview => {}
             Request::Close { file } => {
@@ -122,6 +130,7 @@ impl Session {
                     job: Some(job),
                 });
             }
+            Request::JudgeAnew { fit } => self.judge_anew(fit)?,
             Request::Cancel { job } => {
                 let running = self.running.get(&job);
                 let running = running.ok_or_else(|| Fault::gone("work", job))?;
@@ -148,7 +157,10 @@ impl Session {
                 file,
                 operator,
                 after,
-            } => return Ok(Response::Sample(self.switch(fit, file, operator, after)?).into()),
+            } => {
+                let found = self.switch(fit, file, operator, after)?;
+                return Ok(found.map_or(Response::Never, Response::Sample).into());
+            }
             Request::Worst { fit } => return Ok(Response::Worst(self.worst(fit)?).into()),
             Request::Drive { fit } => {
                 let drive = Drive::new(self.fitted(fit)?)?;
@@ -163,6 +175,12 @@ impl Session {
                 drive.moved(&pull)?;
                 return Ok(Response::Driven(drive.view(pull.drive)).into());
             }
+            Request::Follow(wish) => {
+                self.follow(&wish)?;
+                let drive = self.drives.get(&wish.drive);
+                let drive = drive.ok_or_else(|| Fault::gone("drive", wish.drive))?;
+                return Ok(Response::Driven(drive.view(wish.drive)).into());
+            }
             Request::Design(wish) => {
                 return Ok(Response::Designed(Box::new(self.design(&wish)?)).into());
             }
@@ -175,9 +193,10 @@ impl Session {
     #[must_use]
     pub fn overview(&self) -> Overview {
         let (best, best_by) = fitted::best(&self.fits);
+        let fits = self.fits.iter().map(|fit| fit.view(&self.files));
         Overview {
             files: self.files.iter().map(Opened::view).collect(),
-            fits: self.fits.iter().map(Fitted::view).collect(),
+            fits: fits.collect(),
             jobs: self.jobs(),
             best,
             best_by,

@@ -1,16 +1,15 @@
 //! The work of a fit, while it runs and when it ends.
 
-use super::fault::{Fault, spelt};
+use super::fault::Fault;
 use super::fitted::Fitted;
 use super::id::Id;
+use super::judged::Judged;
+use super::parts::number;
 use super::thinned::fair_ends;
-use hysteron::{
-    Advice, Fit, HeldOut, HoldOut, Progress, Recording, Verdict, advice, fit_holding_out,
-};
+use hysteron::{Fit, HoldOut, Progress, Recording, fit_holding_out};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,6 +24,8 @@ pub struct Job {
     pub(super) hold_out: Option<HoldOut>,
     pub(super) words: String,
     pub(super) validated: Vec<Id>,
+    /// A number for the samples of each file.
+    pub(super) samples: BTreeMap<Id, u64>,
     pub(super) watch: Arc<Watch>,
 }
 
@@ -150,22 +151,7 @@ impl Job {
                 (model, Some(held_out))
             }
         };
-        let verdict = match &self.hold_out {
-            Some(what) => Verdict::of_fit_holding_out(&model, &self.recordings, what)?,
-            None => Verdict::of_fit(&model, &self.recordings)?,
-        };
-        let inverse = verdict.inverse;
-        let verdict = verdict.lines(spelt);
-        let verdict = verdict
-            .into_iter()
-            .map(|(heading, text)| (heading.to_owned(), text));
-        let verdict = verdict.collect();
-        let mut all: Vec<Advice> = advice(&model, &self.recordings)?;
-        all.extend(held_out.iter().flat_map(HeldOut::advice));
-        let advice = all
-            .iter()
-            .map(|advice| format!("{advice}: {}", advice.remedy().spelt(spelt)));
-        let advice = advice.collect();
+        let judged = Judged::of(&model, &self.recordings, self.hold_out.as_ref(), held_out)?;
         let ends = |of: fn(&Recording) -> &[f64]| {
             let values = self.recordings.iter().flat_map(of).copied();
             fair_ends(values).map_or((0.0, 0.0), |ends| (ends.low, ends.high))
@@ -188,28 +174,15 @@ impl Job {
             options: self.options,
             words: self.words,
             validated: self.validated,
+            samples: self.samples,
             model: Arc::new(model),
-            held_out,
-            inverse,
-            advice,
-            verdict,
+            judged,
             courses: BTreeMap::new(),
             bands: BTreeMap::new(),
             held: BTreeMap::new(),
             reached: None,
         })
     }
-}
-
-/// A number for samples.
-fn number<'a>(recordings: impl Iterator<Item = &'a Recording>) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    for recording in recordings {
-        for value in recording.input.iter().chain(&recording.output) {
-            hasher.write_u64(value.to_bits());
-        }
-    }
-    hasher.finish()
 }
 
 fn median_step(time: &[f64]) -> Option<f64> {

@@ -6,6 +6,7 @@ use super::fitted::Spans;
 use super::fitting::held_part;
 use super::id::Id;
 use super::opened::Opened;
+use super::parts::Parts;
 use super::seen::Seen;
 use super::state::Session;
 use super::thinned::{Points, when};
@@ -71,7 +72,7 @@ impl Session {
     }
 
     /// The rows of a file that were held out of a fit.
-    fn rows_held(&mut self, fit: Id, file: Id) -> Result<Spans, Fault> {
+    pub(super) fn rows_held(&mut self, fit: Id, file: Id) -> Result<Spans, Fault> {
         let fitted = self.fitted(fit)?;
         if let Some(spans) = fitted.held.get(&file) {
             return Ok(spans.clone());
@@ -95,11 +96,34 @@ impl Session {
                 }
             }
             Some(part) => {
+                let opened = fitted.files.iter().filter_map(|id| self.file(*id).ok());
+                let recordings = opened.flat_map(|file| file.parts.iter().flat_map(Parts::all));
+                let count = |one: &Recording| Some(one.split(&part).ok()?.held_out);
+                let each = recordings.filter_map(count);
+                let (several, spread) = each.fold((0, 0), |(several, spread), held| {
+                    (
+                        several + 1,
+                        spread + held.iter().filter(|held| **held).count(),
+                    )
+                });
+                let tested = fitted.tested().map_or(spread, |errors| errors.samples);
                 let mut begin = 0;
                 for recording in parts.all() {
                     let end = begin + recording.len();
-                    if let Ok(split) = recording.split(&part) {
-                        held[begin..end].copy_from_slice(&split.held_out);
+                    match recording.split(&part) {
+                        Ok(split) if tested == spread => {
+                            held[begin..end].copy_from_slice(&split.held_out);
+                        }
+                        // What depends on time was tested on the end. Of several recordings it is
+                        // not known where each end begins.
+                        Ok(_) if several == 1 => {
+                            held[begin..end]
+                                .iter_mut()
+                                .rev()
+                                .take(tested)
+                                .for_each(|held| *held = true);
+                        }
+                        _ => {}
                     }
                     begin = end;
                 }

@@ -2,7 +2,7 @@
 
 use super::fault::Fault;
 use super::id::Id;
-use super::parts::Parts;
+use super::parts::{Parts, number};
 use super::prepare::Steps;
 use super::thinned::when;
 use bytes::Bytes;
@@ -25,6 +25,8 @@ pub enum Purpose {
     Validate,
     /// It is only looked at.
     Look,
+    /// A drive follows one of its columns. It need not be a recording.
+    Path,
 }
 
 /// Columns by their names.
@@ -64,6 +66,8 @@ pub(super) struct Opened {
     pub(super) preparation: Vec<Preparation>,
     /// Branches of its input. They are counted once: a page asks often.
     pub(super) branches: usize,
+    /// A number for its samples, the same for the same samples; 0 without any.
+    pub(super) samples: u64,
     pub(super) repair: Option<RepairView>,
     pub(super) notes: Vec<String>,
     /// What is taken of the memory of the session.
@@ -108,6 +112,7 @@ impl Opened {
             parts: Err(Fault::defect("not read yet")),
             preparation: Vec::new(),
             branches: 0,
+            samples: 0,
             repair: None,
             notes: Vec::new(),
             held,
@@ -192,7 +197,7 @@ impl Opened {
         }
         if first < 1 || last < first || last > count || joined == [(1, count)] {
             return Err(Fault::missing(
-                &format!("rows {first} to {last} of {count} cannot be marked"),
+                &format!("samples {first} to {last} of {count} cannot be marked"),
                 "mark parts of the recording, and leave some",
             ));
         }
@@ -224,6 +229,11 @@ impl Opened {
     /// Whether it holds several recordings.
     pub(super) fn has_several(&self) -> bool {
         self.parts.as_ref().is_ok_and(|parts| parts.all().len() > 1)
+    }
+
+    /// The memory of the session.
+    pub(super) fn memory(&self) -> &Memory {
+        self.held.memory()
     }
 
     /// Takes memory for the bytes, their preview, and the numbers read from them.
@@ -283,6 +293,7 @@ impl Opened {
         };
         let parts = self.parts.as_ref();
         self.branches = parts.map_or(0, |parts| parts.all().iter().map(of).sum());
+        self.samples = parts.map_or(0, |parts| number(parts.all().iter()));
         let count = parts.map_or(0, |parts| parts.shown.len());
         self.marked.retain(|(_, last)| *last <= count);
         // Of a recording that is shorter now, all may be marked.
@@ -348,7 +359,7 @@ fn prepared(
         recordings.push(recording);
         reports.push(report);
     }
-    Ok((Parts::new(recordings)?, reports))
+    Ok((raw.prepared(recordings)?, reports))
 }
 
 /// The last part of a path, safe to show.

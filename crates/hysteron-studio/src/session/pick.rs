@@ -84,14 +84,14 @@ impl Session {
     }
 
     /// The first sample after a time at which an operator switches, or the first of all: it is half
-    /// way from off to on there, or back.
+    /// way from off to on there, or back. `None` where it never switches.
     pub(super) fn switch(
         &mut self,
         fit: Id,
         file: Id,
         (off, on): (usize, usize),
         after: Option<f64>,
-    ) -> Result<SampleView, Fault> {
+    ) -> Result<Option<SampleView>, Fault> {
         let model = self.fitted(fit)?.model.clone();
         let parts = self.file(file)?.parts()?.clone();
         let shown = &parts.shown;
@@ -113,26 +113,24 @@ impl Session {
                 if was.replace(is).is_some_and(|was| was != is) {
                     let found = begin + n;
                     if after.is_none_or(|after| found > after) {
-                        return self.sample_at(file, &[fit], found);
+                        return self.sample_at(file, &[fit], found).map(Some);
                     }
                     first.get_or_insert(found);
                 }
             }
             begin += recording.len();
         }
-        let never = || {
-            Fault::missing(
-                "this operator does not switch in this file",
-                "choose a cell that the staircase passes",
-            )
-        };
-        self.sample_at(file, &[fit], first.ok_or_else(never)?)
+        first
+            .map(|found| self.sample_at(file, &[fit], found))
+            .transpose()
     }
 
-    /// The sample with the largest residual of a fit, in the files that it was fitted to and tested
-    /// on. As in the verdict, readings that the fit took for outliers do not count.
+    /// The sample with the largest residual of a fit, in the files that the verdict is about: those for
+    /// validation, with what else was held out, or else those fitted. Readings that the fit took for
+    /// outliers do not count.
     pub(super) fn worst(&mut self, fit: Id) -> Result<WorstView, Fault> {
         let fitted = self.fitted(fit)?;
+        let is_tested = !fitted.validated.is_empty();
         let files = fitted.files.iter().chain(&fitted.validated).copied();
         let files: Vec<Id> = files.collect();
         let mut worst: Option<(f64, Id, usize)> = None;
@@ -142,15 +140,25 @@ impl Session {
             };
             let course = self.course(fit, file)?;
             let outliers: HashSet<usize> = self.outlier_rows(fit, file)?.into_iter().collect();
-            let residuals = course.iter().zip(&recording.output).enumerate();
-            for (n, (modelled, measured)) in residuals.filter(|(n, _)| !outliers.contains(n)) {
+            let spans = match is_tested {
+                true => self.rows_held(fit, file)?,
+                false => [(1, recording.len())].into(),
+            };
+            let samples = spans.iter().flat_map(|(first, last)| first - 1..*last);
+            for n in samples.filter(|n| !outliers.contains(n)) {
+                let (modelled, measured) = (course[n], recording.output[n]);
                 let residual = (modelled - measured).abs();
                 if worst.is_none_or(|(largest, ..)| residual > largest) {
                     worst = Some((residual, file, n));
                 }
             }
         }
-        let none = || Fault::missing("no file of this fit is open", "open it again");
+        let none = || {
+            Fault::missing(
+                "no file that this fit was judged by is open",
+                "open it again",
+            )
+        };
         let (_, file, n) = worst.ok_or_else(none)?;
         let sample = self.sample_at(file, &[fit], n)?;
         Ok(WorstView { file, sample })

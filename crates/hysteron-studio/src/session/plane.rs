@@ -46,8 +46,10 @@ pub struct PlaneView {
 /// A sample of a file.
 #[derive(Debug, Clone, Serialize)]
 pub struct SampleView {
-    /// Its row, counted from 1.
-    pub row: usize,
+    /// Its number among the samples of the file, counted from 1.
+    pub number: usize,
+    /// Where it stands in the file, as `line 12`; `None` where a preparation has made other samples.
+    pub place: Option<String>,
     /// Its time in seconds, or its number from 1.
     pub time: f64,
     /// Its input.
@@ -72,12 +74,14 @@ impl Session {
         fits: &[Id],
         n: usize,
     ) -> Result<SampleView, Fault> {
-        let recording = self.file(file)?.recording()?.clone();
+        let parts = self.file(file)?.parts()?;
+        let (recording, place) = (parts.shown.clone(), parts.place(n));
         let (courses, _) = self.courses(fits, file)?;
         let modelled = courses.iter().map(|(fit, course)| (*fit, course[n]));
         let modelled = modelled.collect();
         Ok(SampleView {
-            row: n + 1,
+            number: n + 1,
+            place: place.map(|place| place.to_string()),
             time: when(&recording, n),
             input: recording.input[n],
             output: recording.output[n],
@@ -103,7 +107,7 @@ impl Session {
         if let Some((file, time)) = at {
             let found = self.sample(file, &[fit], time)?;
             match self.course(fit, file) {
-                Ok(_) => state = Some(self.state_at(fit, file, found.row)?),
+                Ok(_) => state = Some(self.state_at(fit, file, found.number)?),
                 Err(why) => left_out = Some(why),
             }
             sample = state.is_some().then_some(found);

@@ -6,6 +6,7 @@ use super::fault::Fault;
 use super::file_view::FileView;
 use super::fitted::FitView;
 use super::fitting::Held;
+use super::follow::Follow;
 use super::id::Id;
 use super::job::JobView;
 use super::look::Curves;
@@ -60,14 +61,14 @@ pub enum Request {
         /// What it is for.
         purpose: Purpose,
     },
-    /// Marks a span of rows for validation, besides those that are marked.
+    /// Marks a span of samples for validation, besides those that are marked.
     Mark {
         /// The file.
         file: Id,
-        /// The first and the last row, counted from 1; `None` for no rows at all.
+        /// The first and the last sample, counted from 1; `None` for none at all.
         rows: Option<(usize, usize)>,
     },
-    /// Marks the rows in a span of the time for validation, besides those that are marked.
+    /// Marks the samples in a span of the time for validation, besides those that are marked.
     MarkSpan {
         /// The file.
         file: Id,
@@ -84,6 +85,11 @@ pub enum Request {
         /// What tests the fit.
         #[serde(default)]
         hold_out: Held,
+    },
+    /// Computes the errors of a fit anew, on the files for validation as they are now.
+    JudgeAnew {
+        /// The fit.
+        fit: Id,
     },
     /// Cancels a job.
     Cancel {
@@ -148,6 +154,8 @@ pub enum Request {
     },
     /// Moves a model that is driven.
     Pull(Pull),
+    /// Lets it follow a column of a file.
+    Follow(Follow),
     /// The profile of input that the data lack.
     Design(Wish),
     /// Something to take home.
@@ -155,6 +163,20 @@ pub enum Request {
 }
 
 impl Request {
+    /// Whether it asks for a part of a picture. A page may ask for one of a file that it, or another
+    /// page, has just closed.
+    #[must_use]
+    pub(super) fn draws(&self) -> bool {
+        matches!(
+            self,
+            Self::Curves(_)
+                | Self::Plane { .. }
+                | Self::Sample { .. }
+                | Self::Nearest { .. }
+                | Self::Switch { .. }
+        )
+    }
+
     /// Whether the session may be another one afterwards, so that its pages are to look again.
     #[must_use]
     pub fn changes(&self) -> bool {
@@ -169,6 +191,7 @@ impl Request {
                 | Self::Worst { .. }
                 | Self::Design(_)
                 | Self::Pull(_)
+                | Self::Follow(_)
                 | Self::Take(_)
                 | Self::Drive { .. }
         )
@@ -202,6 +225,10 @@ pub enum Response {
     Plane(PlaneView),
     /// A sample.
     Sample(SampleView),
+    /// There is no such sample: the operator never switches.
+    Never,
+    /// The file or the fit that was to be drawn has been closed meanwhile.
+    Gone,
     /// The sample with the largest residual.
     Worst(WorstView),
     /// A model that is driven.

@@ -5,6 +5,7 @@ use super::fitted::Fitted;
 use super::fitting::{FILES, held_part, part};
 use super::id::{Id, LAST};
 use super::job::build;
+use super::judged::Judged;
 use super::opened::{Opened, Part, Purpose, plain_name};
 use super::prepare::Steps;
 use super::state::{MOST, Session};
@@ -117,6 +118,8 @@ pub(super) struct SavedFit {
     dt: Option<f64>,
     #[serde(default)]
     tested_on: u64,
+    #[serde(default)]
+    samples: BTreeMap<Id, u64>,
     model: Value,
 }
 
@@ -128,13 +131,14 @@ impl SavedFit {
             validated: fit.validated.clone(),
             options: fit.options.clone(),
             hold_out: fit.words.clone(),
-            advice: fit.advice.clone(),
-            inverse: fit.inverse,
-            verdict: fit.verdict.clone(),
+            advice: fit.judged.advice.clone(),
+            inverse: fit.judged.inverse,
+            verdict: fit.judged.verdict.clone(),
             input: fit.input,
             output: fit.output,
             dt: fit.dt,
             tested_on: fit.tested_on,
+            samples: fit.samples.clone(),
             model: serde_json::from_str(&fit.model.to_json()).ok()?,
         })
     }
@@ -154,17 +158,21 @@ impl SavedFit {
         }
         let model = Model::from_json(&self.model.to_string())?;
         let record = model.fit.as_ref().and_then(|fit| fit.other.get("hold_out"));
+        let judged = Judged {
+            held_out: record.and_then(HeldOut::from_record),
+            inverse: self.inverse,
+            advice: self.advice,
+            verdict: self.verdict,
+        };
         Ok(Fitted {
             id: self.id,
-            held_out: record.and_then(HeldOut::from_record),
             model: Arc::new(model),
             files: self.files,
             validated: self.validated,
             options: self.options,
             words,
-            inverse: self.inverse,
-            advice: self.advice,
-            verdict: self.verdict,
+            judged,
+            samples: self.samples,
             input: self.input,
             output: self.output,
             dt: self.dt,

@@ -55,6 +55,11 @@ pub enum Take {
     Parquet(View),
     /// The profile of an experiment, as CSV.
     Profile(Wish),
+    /// What came of the last path of a drive, as CSV.
+    Way {
+        /// The drive.
+        drive: Id,
+    },
     /// The commands that do what was clicked.
     Command {
         /// The fit.
@@ -129,6 +134,11 @@ impl Session {
                 name: "profile.csv".into(),
                 media: "text/csv",
                 bytes: self.profile_table(wish)?,
+            },
+            Take::Way { drive } => Download {
+                name: "way.csv".into(),
+                media: "text/csv",
+                bytes: self.followed_table(drive)?,
             },
             Take::Command { fit } => text(
                 "fit.sh",

@@ -33,7 +33,7 @@ fn a_fit_that_is_left_out_is_no_error_of_the_page() {
     show_play(&mut browser, &tab);
     fit(&mut browser, &tab, "first-order", "nothing");
     let staircase =
-        "document.querySelector('#plane-text').textContent.includes('staircase at row')";
+        "document.querySelector('#plane-text').textContent.includes('staircase at sample')";
     browser.value(&tab, POINT);
     browser.wait(&tab, staircase);
     let mut text = "temperature [degC],displacement [mm]\n".to_owned();

@@ -44,7 +44,7 @@ fn every_view_answers_the_hand(way: Way) {
         "document.querySelectorAll('.column.used').length >= 2",
     );
 
-    // Prepare: the spike goes, its row is told, and the raw line stays beside the prepared one.
+    // Prepare: the spike goes, its line is told, and the raw line stays beside the prepared one.
     browser.wait(&tab, "document.querySelector('#plot-input .scatterlayer')");
     browser.value(
         &tab,
@@ -52,7 +52,7 @@ fn every_view_answers_the_hand(way: Way) {
     );
     browser.wait(
         &tab,
-        "document.querySelector('.report')?.textContent.includes('rows 701')",
+        "document.querySelector('.report')?.textContent.includes('(line 702 of the file)')",
     );
     browser.wait(
         &tab,
@@ -90,7 +90,8 @@ fn every_view_answers_the_hand(way: Way) {
     let space =
         "document.body.dispatchEvent(new KeyboardEvent('keydown', {key: ' ', bubbles: true}))";
     browser.value(&tab, space);
-    let row = "Number(document.querySelector('#play-sample').textContent.match(/Row (\\d+)/)?.[1])";
+    let row =
+        "Number(document.querySelector('#play-sample').textContent.match(/[Ss]ample (\\d+)/)?.[1])";
     browser.wait(&tab, &format!("{row} > 600"));
     browser.value(&tab, space);
     browser.wait(

@@ -86,7 +86,7 @@ fn a_click_finds_its_sample_and_the_worst_one_is_found() {
     let (mut session, file, fit) = fitted(json!({"levels": "12", "bootstrap": "0"}));
     // As in the verdict, a reading that the fit took for an outlier is not the worst one.
     let worst = ask(&mut session, json!({"request": "worst", "fit": fit})).unwrap();
-    let row = worst["sample"]["row"].as_u64().unwrap();
+    let row = worst["sample"]["number"].as_u64().unwrap();
     assert_eq!(worst["file"], file);
     let overview = ask(&mut session, json!({"request": "overview"})).unwrap();
     let verdict = overview["fits"][0]["verdict"].as_array().unwrap().iter();
@@ -116,7 +116,7 @@ fn a_click_finds_its_sample_and_the_worst_one_is_found() {
         ("output", [40.04, output]),
     ] {
         let found = ask(&mut session, near(picture, at)).unwrap();
-        assert_eq!(found["row"], 401, "{picture}");
+        assert_eq!(found["number"], 401, "{picture}");
     }
 }
 
@@ -211,4 +211,35 @@ fn the_archive_of_c_builds_and_runs() {
             assert!((found - output).abs() < 1e-3, "{options}: {found} {output}");
         }
     }
+}
+
+/// A fit that looks for what comes late is tested on the end, where that is like the rest: there it is
+/// drawn, with as many samples as were tested.
+#[test]
+fn an_end_that_was_held_out_is_drawn_at_the_end() {
+    let mut text = "time [s],T [degC],lift [mm]\n".to_owned();
+    let mut y = 20.0_f64;
+    for n in 0..900 {
+        let input = 50.0 - 30.0 * (f64::from(n) * 0.05).cos();
+        y = y.clamp(input - 4.0, input + 4.0);
+        text += &format!("{},{input},{}\n", f64::from(n) * 0.1, 0.2 * y);
+    }
+    let mut session = Session::new(1 << 28);
+    let file = session.open("a.csv", text.into()).unwrap();
+    let options = json!({"levels": "8", "bootstrap": "0"});
+    let fit = json!({"request": "fit", "options": options});
+    let fit = ask(&mut session, fit).unwrap();
+    let view = json!({"request": "curves", "file": file, "fits": [fit], "picture": "output",
+        "of": fit, "pixels": [600, 400]});
+    let seen = ask(&mut session, view).unwrap();
+    let overview = ask(&mut session, json!({"request": "overview"})).unwrap();
+    let fitted = &overview["fits"][0];
+    let tested = fitted["held_out"]["model"]["samples"].as_f64().unwrap();
+    assert_eq!(fitted["hold_out"], "branches:20%");
+    let held: Vec<[f64; 2]> = serde_json::from_value(seen["held"].clone()).unwrap();
+    let [[from, to]] = held[..] else {
+        panic!("{held:?}")
+    };
+    assert!((to - 89.9).abs() < 1e-9, "{to}");
+    assert_eq!(((to - from) * 10.0).round() + 1.0, tested);
 }

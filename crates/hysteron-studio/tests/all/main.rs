@@ -21,9 +21,11 @@ mod recordings;
 
 mod accessibility;
 mod browser;
+mod browser_files;
 mod browser_sample;
 mod browser_views;
 mod carried;
+mod changed_files;
 mod hostile_sessions;
 mod layers;
 mod server;

@@ -108,7 +108,7 @@ fn a_file_becomes_a_model_that_is_driven_and_taken_home() {
         let plane = value(&mut session, request);
         assert_eq!(plane["values"].as_array().unwrap().len(), 15, "{kind}");
         if kind == "states" {
-            assert_eq!(plane["sample"]["row"], 124);
+            assert_eq!(plane["sample"]["number"], 124);
         }
     }
 
