@@ -218,8 +218,8 @@ impl Text {
         let (row, decimal_comma) = (&mut self.row.0, self.dialect.decimal_comma);
         self.splitter
             .line(&self.raw, self.dialect.delimiter, |cell| {
-                let pointed = decimal_comma.then(|| dialect::with_point(cell)).flatten();
-                row.push_field(pointed.as_deref().unwrap_or(cell));
+                let rewritten = dialect::rewritten(cell, decimal_comma);
+                row.push_field(rewritten.as_deref().unwrap_or(cell));
             })
     }
 

@@ -71,7 +71,7 @@ impl Lines {
                 continue;
             }
             self.count += 1;
-            let number = |cell: &[u8]| is_number(cell) || with_point(cell).is_some();
+            let number = |cell: &[u8]| is_number(cell) || rewritten(cell, true).is_some();
             let delimited = |byte: &u8| matches!(byte, b'\t' | b';' | b',');
             self.rows = match line.split(delimited).any(number) {
                 true => self.rows + 1,
@@ -162,17 +162,81 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
         .any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
 }
 
-/// A number with a decimal comma, rewritten with a point.
-pub(super) fn with_point(cell: &[u8]) -> Option<Vec<u8>> {
+/// A number with a decimal comma, or with thousands set apart, rewritten as Rust reads it. `None` for
+/// any other cell.
+pub(super) fn rewritten(cell: &[u8], decimal_comma: bool) -> Option<Vec<u8>> {
+    if !decimal_comma {
+        return cell.contains(&b'.').then(|| in_one(cell, '.')).flatten();
+    }
     let comma = cell.iter().position(|byte| *byte == b',')?;
-    let mut cell = cell.to_vec();
-    cell[comma] = b'.';
-    is_number(&cell).then_some(cell)
+    let mut pointed = cell.to_vec();
+    pointed[comma] = b'.';
+    match is_number(&pointed) {
+        true => Some(pointed),
+        false => in_one(cell, ','),
+    }
+}
+
+/// A number whose thousands are set apart, as in `1.234,5`, `1'234,5` and `1,234.5`, in one. It needs
+/// decimals: `1.234` may be a small number.
+fn in_one(cell: &[u8], decimal: char) -> Option<Vec<u8>> {
+    let text = std::str::from_utf8(cell).ok()?.trim();
+    let (whole, decimals) = text.split_once(decimal)?;
+    let (sign, digits) = match whole.strip_prefix('-') {
+        Some(digits) => ("-", digits),
+        None => ("", whole.strip_prefix('+').unwrap_or(whole)),
+    };
+    let apart = digits.chars().find(|c| !c.is_ascii_digit())?;
+    let may_be = ['.', ',', '\'', '\u{2019}', ' ', '\u{a0}', '\u{202f}'];
+    let all_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let mut groups = digits.split(apart);
+    let leading = groups
+        .next()
+        .filter(|first| (1..=3).contains(&first.len()))?;
+    let are_groups = groups.all(|group| group.len() == 3 && all_digits(group));
+    if !may_be.contains(&apart) || !all_digits(leading) || !are_groups {
+        return None;
+    }
+    let number = format!("{sign}{}.{decimals}", digits.replace(apart, ""));
+    is_number(number.as_bytes()).then(|| number.into_bytes())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thousands_that_are_set_apart_are_read() {
+        for (cell, decimal_comma, read) in [
+            ("1.234,56", true, Some("1234.56")),
+            (" -12.345.678,5", true, Some("-12345678.5")),
+            ("1'020,50", true, Some("1020.50")),
+            ("1 020,50", true, Some("1020.50")),
+            ("1\u{a0}020,50", true, Some("1020.50")),
+            ("20,5", true, Some("20.5")),
+            ("1,5e3", true, Some("1.5e3")),
+            ("1,234.56", false, Some("1234.56")),
+            ("1\u{2019}234.5e-2", false, Some("1234.5e-2")),
+            // What may be a small number, or is none.
+            ("1.234", true, None),
+            ("1,234", false, None),
+            ("12.34,5", true, None),
+            ("1234.567,8", true, None),
+            (".234,5", true, None),
+            ("1.234.56,7", true, None),
+            ("1.2 34,5", true, None),
+            ("24.11.2026", true, None),
+            ("14:03:05.250", false, None),
+            ("10.0.0.1, up", true, None),
+            ("1,234.5.6", false, None),
+            ("a, b.", false, None),
+            ("", true, None),
+        ] {
+            let found = rewritten(cell.as_bytes(), decimal_comma);
+            let found = found.map(|cell| String::from_utf8(cell).unwrap());
+            assert_eq!(found.as_deref().map(str::trim), read, "{cell}");
+        }
+    }
 
     #[test]
     fn dialects_are_told_apart() {

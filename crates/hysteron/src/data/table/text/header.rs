@@ -1,7 +1,7 @@
 //! Finds the header of a table in a text file, below the lines that a measuring program writes
 //! above it.
 
-use super::dialect::{is_missing, is_number, with_point};
+use super::dialect::{is_missing, is_number, rewritten};
 
 /// The position of the header, and what is around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,8 +27,11 @@ pub(super) struct Line {
 
 impl Line {
     pub(super) fn new(at: usize, cells: Vec<Vec<u8>>, delimiter: u8) -> Self {
-        let number =
-            |cell: &Vec<u8>| is_number(cell) || delimiter != b',' && with_point(cell).is_some();
+        let commas = delimiter != b',';
+        let number = |cell: &Vec<u8>| {
+            let is_rewritten = |decimal_comma| rewritten(cell, decimal_comma).is_some();
+            is_number(cell) || is_rewritten(false) || commas && is_rewritten(true)
+        };
         Self {
             numbers: cells.iter().map(number).collect(),
             at,
