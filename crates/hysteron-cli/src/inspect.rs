@@ -1,7 +1,7 @@
 //! `hysteron inspect`
 
-use crate::remedy::say_doubts;
-use crate::terminal::{Result, print};
+use crate::remedy::{say_doubts, text_of_advice};
+use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
     Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, StageSummary,
@@ -42,7 +42,7 @@ fn columns(args: &args::Inspect) -> Result<()> {
         ]);
     }
     print(&format!(
-        "{}: {} rows\n{}\nName --input and --output for reversals and excitation.",
+        "{}: {} rows\n{}\nName --input and --output for reversals and excitation, or let `hysteron start` find them.",
         args.file.display(),
         summary.rows,
         text::table(&lines)
@@ -66,6 +66,9 @@ fn summary(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
         return print(&json!(summary).to_string());
     }
     say_doubts(&summary.doubts, "");
+    for advice in hysteron::advice_before_fit(&recordings) {
+        say(format_args!("{}", text_of_advice(&advice)));
+    }
     print(&recording_text(&summary))
 }
 

@@ -84,7 +84,8 @@ pub use hysteron_files::Destination;
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
     FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, advice,
-    cross_validate, excitation, left_out, plane_of, usual_start, way_against_input,
+    advice_before_fit, cross_validate, excitation, left_out, plane_of, usual_start,
+    way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, ConstantSummary, LoadSummary, ModelSummary, RecordingSummary, Series,

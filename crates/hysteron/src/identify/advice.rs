@@ -1,6 +1,6 @@
 //! Warnings about a fit: signs in the data that the model may not be what the user expects.
 
-use crate::error::Result;
+use crate::error::{Place, Result};
 use crate::identify::choose::start::MANY_OPEN;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Outlier, Solver, Start, Surroundings};
@@ -55,8 +55,10 @@ pub enum Advice {
         series: String,
         /// Number of these readings.
         samples: usize,
-        /// The first of them, counted from 1.
+        /// The first of them, counted from 1 in its recording.
         first: usize,
+        /// Where that stands in its file, if rows count otherwise there.
+        place: Option<Place>,
     },
     /// There are hardly more samples than operators: most weights follow from the prior.
     FewData {
@@ -115,12 +117,16 @@ impl fmt::Display for Advice {
                 series,
                 samples,
                 first,
-            } => write!(
-                f,
-                "{} of {series} out of line with neighbours or held, the first in row {first}: \
-                 this bends the model",
-                counted(*samples, "reading")
-            ),
+                place,
+            } => {
+                let place = place.map_or(String::new(), |place| format!(" ({place})"));
+                write!(
+                    f,
+                    "{} of {series} out of line with neighbours or held, the first is sample \
+                     {first}{place}: this bends the model",
+                    counted(*samples, "reading")
+                )
+            }
             Self::FewData {
                 samples,
                 operators,
@@ -284,6 +290,27 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     Ok(advice)
 }
 
+/// The warnings for recordings to which nothing was fitted: readings that stand out or were held, and
+/// reversals that are noise.
+///
+/// ```
+/// use hysteron::{Recording, advice_before_fit};
+/// let mut output: Vec<f64> = (0..200).map(|n| (f64::from(n) * 0.1).sin()).collect();
+/// let input = output.clone();
+/// output[70] += 5.0;
+/// let found = advice_before_fit(&[Recording::new(input, output)?]);
+/// assert!(found[0].to_string().contains("the first is sample 71"));
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+#[must_use]
+pub fn advice_before_fit(recordings: &[Recording]) -> Vec<Advice> {
+    let each = recordings.iter().enumerate();
+    let spikes = each.flat_map(|(number, recording)| spikes(recording, number, &[]));
+    spikes
+        .chain(recordings.iter().find_map(false_reversals))
+        .collect()
+}
+
 /// The wrong readings of each series of the recording with this number.
 fn spikes(recording: &Recording, number: usize, outliers: &[Outlier]) -> Vec<Advice> {
     let is_outlier = |sample| {
@@ -297,6 +324,7 @@ fn spikes(recording: &Recording, number: usize, outliers: &[Outlier]) -> Vec<Adv
             series: quantity.name.clone(),
             samples: found.len(),
             first: first + 1,
+            place: recording.place(*first),
         })
     };
     let both = [

@@ -27,7 +27,7 @@ mod stages;
 mod weights;
 mod words;
 
-pub use advice::{Advice, advice};
+pub use advice::{Advice, advice, advice_before_fit};
 pub use choose::left_out::{LeftOut, left_out};
 pub(crate) use choose::left_out::{predicted_from, predicted_without};
 pub use choose::start::usual_start;
