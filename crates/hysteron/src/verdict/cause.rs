@@ -58,6 +58,12 @@ pub enum Cause {
         /// Their number.
         points: usize,
     },
+    /// What comes late was found where the input had one speed, so that a lag could not be told from a
+    /// wider loop.
+    OneSpeed {
+        /// The speed, per second.
+        speed: f64,
+    },
     /// Loads that were left out are predicted badly, so others may be as well.
     LoadsLeftOut {
         /// The error there, in percent of the range of the output at such a load.
@@ -125,6 +131,7 @@ impl Cause {
             Self::Noise { .. } => "noise",
             Self::FewBranches { .. } => "few_branches",
             Self::FewPoints { .. } => "few_points",
+            Self::OneSpeed { .. } => "one_speed",
             Self::LoadsLeftOut { .. } => "loads_left_out",
             Self::Misfit { .. } => "misfit",
         }
@@ -139,6 +146,7 @@ impl Cause {
             Self::Rival { .. } => 0.9,
             Self::Elsewhere { .. } => 0.85,
             Self::LoadsLeftOut { .. } => 0.82,
+            Self::OneSpeed { .. } => 0.81,
             Self::FewBranches { .. } | Self::FewPoints { .. } => 0.8,
             Self::Outside { share } if *share > SEEN => 0.3,
             Self::Noise { .. } => Self::NOISE,

@@ -298,6 +298,10 @@ impl Verdict {
             let parts = cause::of_parts(recordings, output, was_fitted);
             verdict.causes.extend(parts);
         }
+        let comes_late = model.without_body().is_timed() || !model.delay().is_none();
+        if let (true, true, Some(speed)) = (was_fitted, comes_late, verdict.one_speed) {
+            verdict.causes.push(Cause::OneSpeed { speed });
+        }
         if let Some(fit) = &model.fit {
             verdict.causes.extend(match was_fitted {
                 true => cause::few_points(recordings),
@@ -345,7 +349,7 @@ impl Verdict {
             .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
         let guessed = self.causes.iter().any(|cause| {
             let few = matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. });
-            few || matches!(cause, Cause::LoadsLeftOut { .. })
+            few || matches!(cause, Cause::LoadsLeftOut { .. } | Cause::OneSpeed { .. })
         });
         self.grade = match (by_error, rival_wins) {
             _ if outside => Grade::Poor,

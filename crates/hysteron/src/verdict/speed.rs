@@ -2,6 +2,7 @@
 
 use crate::recording::Recording;
 use crate::series::clear_branch_spans;
+use crate::series::coarse::goes_by_jumps;
 
 /// So many branches tell that there is one speed.
 const BRANCHES: usize = 4;
@@ -10,11 +11,14 @@ const BRANCHES: usize = 4;
 const ONE: f64 = 1.5;
 
 /// The speed of the input along a branch in the middle, per second, if all are about as fast; `None`
-/// without time.
+/// without time, and where the input jumps.
 pub(super) fn one_speed(recordings: &[Recording]) -> Option<f64> {
     let mut speeds = Vec::new();
     for recording in recordings {
         let time = recording.time.as_ref()?;
+        if goes_by_jumps(&recording.input) {
+            return None;
+        }
         for samples in clear_branch_spans(&recording.input) {
             let (first, last) = (samples.start.saturating_sub(1), samples.end - 1);
             let way = (recording.input[last] - recording.input[first]).abs();

@@ -112,6 +112,11 @@ impl Verdict {
                 "loads that were left out are predicted to {percent:.2} % of their range: at loads \
                  that were not recorded it is a guess"
             ),
+            Cause::OneSpeed { speed } => format!(
+                "all was recorded at one speed ({} per second), so what comes late is not told from a \
+                 wider loop: at other speeds it is a guess",
+                self.input.text(*speed)
+            ),
             Cause::Elsewhere { coverage, sessions } => format!(
                 "only {coverage:.1} % of the samples are inside the {}: it does not belong to \
                  this recording",
@@ -289,6 +294,10 @@ impl Verdict {
             Some(Cause::Readings { .. }) => Remedy::new(
                 "use {}, which replaces them if that helps",
                 [Setting::on("prepare")],
+            ),
+            Some(Cause::OneSpeed { .. }) => Remedy::new(
+                "record at two speeds or more, of which one is several times the other",
+                [],
             ),
             Some(Cause::LoadsLeftOut { .. }) => {
                 Remedy::new("record loads between those that there are", [])

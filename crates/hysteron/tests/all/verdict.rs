@@ -522,3 +522,48 @@ fn what_was_held_out_is_judged_by_itself() {
     let of_part = Verdict::of_fit_holding_out(&model, &first, &part).unwrap();
     assert_eq!(of_part, Verdict::of_fit(&model, &first).unwrap());
 }
+
+/// A lag that was found at one speed is a wider loop at that speed; at several it is a lag.
+#[test]
+fn a_lag_found_at_one_speed_is_no_promise() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let plant = model(&weights(&mut rng));
+    let mut recorded = |speeds: [f64; 3]| {
+        let mut input = vec![20.0_f64];
+        for n in 0..40 {
+            let last = input[input.len() - 1];
+            let (end, speed) = match n % 2 == 0 {
+                true => (rng.random_range(55.0..80.0), speeds[n % 3]),
+                false => (rng.random_range(20.0..45.0), speeds[n % 3]),
+            };
+            let count = ((end - last).abs() / speed).ceil();
+            input.extend((1..=count as i32).map(|k| last + (end - last) * f64::from(k) / count));
+        }
+        let mut lagged = 3.0;
+        let late = plant.simulate(&input).unwrap().into_iter().map(|y| {
+            lagged += (y - lagged) / 5.0;
+            lagged + 0.01 * rng.random_range(-1.0..1.0)
+        });
+        let output = late.collect();
+        let mut recording = Recording::new(input, output).unwrap();
+        recording.time = Some((0..recording.len()).map(|n| n as f64).collect());
+        recording
+    };
+    for (speeds, is_one) in [([0.8, 0.8, 0.8], true), ([0.4, 0.8, 1.6], false)] {
+        let recording = recorded(speeds);
+        let model = Fit::new().bootstrap(0).run(&recording).unwrap();
+        assert!(model.is_timed());
+        let verdict = Verdict::of_fit(&model, &recording).unwrap();
+        let one = verdict
+            .causes
+            .iter()
+            .any(|cause| matches!(cause, Cause::OneSpeed { .. }));
+        assert_eq!(one, is_one, "{verdict}");
+        assert_eq!(verdict.grade == Grade::Good, !is_one, "{verdict}");
+        assert_eq!(
+            verdict.next().to_string().contains("two speeds"),
+            is_one,
+            "{verdict}"
+        );
+    }
+}
