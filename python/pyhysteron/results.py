@@ -774,6 +774,8 @@ class Worst(_Result):
 
     Attributes
     ----------
+    file : str or None
+        The file of a recording that was held out; None in what was fitted or evaluated.
     recording : int
         Number of its recording, from 0.
     sample : int
@@ -788,6 +790,7 @@ class Worst(_Result):
         The output of the model.
     """
 
+    file: str | None
     recording: int
     sample: int
     time: float | None

@@ -80,7 +80,8 @@ impl Worst {
 ///
 /// ```
 /// use hysteron::{Fit, Grade, Recording, Verdict};
-/// let input: Vec<f64> = (0..900).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.02).cos()).collect();
+/// let swing = |n| 50.0 - (30.0 - 0.02 * n) * (n * 0.05).cos();
+/// let input: Vec<f64> = (0..900).map(|n| swing(f64::from(n))).collect();
 /// let play = |y: &mut f64, x: &f64| { *y = y.clamp(x - 2.0, x + 2.0); Some(*y) };
 /// let recording = Recording::new(input.clone(), input.iter().scan(20.0, play).collect())?;
 /// let model = Fit::new().run(&recording)?;
