@@ -80,7 +80,7 @@ impl Worst {
 ///
 /// ```
 /// use hysteron::{Fit, Grade, Recording, Verdict};
-/// let swing = |n| 50.0 - (30.0 - 0.02 * n) * (n * 0.05).cos();
+/// let swing = |n: f64| 50.0 - (30.0 - 0.02 * n) * (n * 0.05).cos();
 /// let input: Vec<f64> = (0..900).map(|n| swing(f64::from(n))).collect();
 /// let play = |y: &mut f64, x: &f64| { *y = y.clamp(x - 2.0, x + 2.0); Some(*y) };
 /// let recording = Recording::new(input.clone(), input.iter().scan(20.0, play).collect())?;
