@@ -108,13 +108,15 @@ impl Config {
             return Err(self.refused("controller", what));
         };
         let kind = controller.kind;
-        let needs = kind != hysteron_sim::track::Kind::Pid;
+        let what = "`pi-rls` is a controller of `track` alone, to compare with";
+        let fine = kind != hysteron_sim::track::Kind::PiRls;
+        self.require(fine, "controller.kind", what)?;
         let what = format!(
             "the controller `{}` needs a model: name its file",
             kind.name()
         );
         self.require(
-            !needs || controller.model.is_some(),
+            !kind.has_model() || controller.model.is_some(),
             "controller.model",
             &what,
         )?;

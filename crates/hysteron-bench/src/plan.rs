@@ -231,7 +231,7 @@ impl Made {
         self.tolerance = options.tolerance.unwrap_or(self.tolerance);
         let compensator = match &sources.model {
             Some(model) if kind.adapts() => Some(self.learning(config, options, model)?),
-            Some(model) if kind != track::Kind::Pid => Some(Compensator::fixed(model)?),
+            Some(model) if kind.has_model() => Some(Compensator::fixed(model)?),
             _ => None,
         };
         let mut scheme = Scheme {

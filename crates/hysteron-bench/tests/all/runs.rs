@@ -251,6 +251,10 @@ fn what_no_run_can_be_is_refused_with_its_line() {
              controller = { kind = 'pid', proportional = 1, learner = 'auto' }",
             "does not learn",
         ),
+        (
+            "mode = 'control'\nreference = { table = 'r.csv' }\ncontroller = { kind = 'pi-rls' }",
+            "of `track` alone",
+        ),
     ] {
         let error = Config::parse(&format!("{text}{tail}"), "run.toml".as_ref()).unwrap_err();
         assert!(error.to_string().contains(says), "{text}: {error}");

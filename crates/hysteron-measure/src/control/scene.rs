@@ -13,6 +13,9 @@ const KINDS: [(&str, Kind); 5] = [
     ("adaptive inverse + PID", Kind::AdaptivePidAnticipate),
 ];
 
+/// How many times faster than the test asks the closed loop of PI/RLS is made. The best is shown.
+const SPEEDS: [f64; 5] = [1.0, 2.0, 4.0, 10.0, 20.0];
+
 /// The errors of each controller, a median over the runs for each window.
 type Row = (String, Vec<f64>);
 
@@ -38,9 +41,14 @@ impl Scene {
             .map(|(k, (name, _))| ((*name).into(), medians(&found, k, &shown)))
             .collect();
         rows[0].0 += by(scenario.shared.tuning);
-        if let Some(other) = pid_by_the_other_test(&scenario, &shown) {
-            rows.insert(1, other);
-        }
+        let other = with_the_other_test(&scenario);
+        let pid = row(&other, Kind::Pid, &shown);
+        rows.splice(
+            1..1,
+            [pid, pi_rls(&scenario, &shown), pi_rls(&other, &shown)]
+                .into_iter()
+                .flatten(),
+        );
         let bound = bound(&scenario, &windows)?;
         rows.extend(bound.map(|errors| ("bound".into(), errors)));
         let [_, _, output] = scenario.plant.quantities();
@@ -85,6 +93,25 @@ impl Scene {
             .collect()
     }
 
+    /// Where the better PI/RLS has a smaller error than the better one of the two with an inverse and
+    /// PID, by more than a factor of `most`.
+    pub(super) fn won_by_pi_rls(&self, most: f64) -> Vec<String> {
+        let rows = self
+            .rows
+            .iter()
+            .filter(|(name, _)| name.starts_with("PI/RLS"));
+        let won = rows.flat_map(|(name, _)| {
+            let both = ["inverse + PID", "adaptive inverse + PID"];
+            self.lost(name, &both, 0.0).into_iter()
+        });
+        let mut best = vec![f64::INFINITY; self.windows.len()];
+        won.for_each(|(w, ratio)| best[w] = best[w].min(ratio));
+        let won = best.iter().zip(&self.windows);
+        won.filter(|(ratio, _)| **ratio * most < 1.0)
+            .map(|(ratio, window)| format!("{}, {ratio:.2}", words(window)))
+            .collect()
+    }
+
     fn lost(&self, one: &str, others: &[&str], most: f64) -> Vec<(usize, f64)> {
         let of = |name: &str| {
             let row = self.rows.iter().find(|(row, _)| row == name);
@@ -106,17 +133,34 @@ fn by(tuning: Tuning) -> &'static str {
     }
 }
 
-/// None where the plant does not answer that test.
-fn pid_by_the_other_test(scenario: &Scenario, windows: &[usize]) -> Option<Row> {
+fn with_the_other_test(scenario: &Scenario) -> Scenario {
     let mut scenario = scenario.clone();
-    scenario.controllers = vec![Kind::Pid];
     scenario.shared.tuning = match scenario.shared.tuning {
         Tuning::Relay => Tuning::Step,
         Tuning::Step => Tuning::Relay,
     };
+    scenario
+}
+
+/// A single controller. None where the plant does not answer the test of the scenario.
+fn row(scenario: &Scenario, kind: Kind, windows: &[usize]) -> Option<Row> {
+    let mut scenario = scenario.clone();
+    scenario.controllers = vec![kind];
     let found = track(&scenario, Progress::NONE).ok()?;
-    let name = format!("PID{}", by(scenario.shared.tuning));
+    let name = format!("{}{}", kind.words(), by(scenario.shared.tuning));
     Some((name, medians(&found, 0, windows)))
+}
+
+/// PI/RLS with the speed of the smallest geometric mean of its errors: no window decides alone.
+fn pi_rls(scenario: &Scenario, windows: &[usize]) -> Option<Row> {
+    let each = SPEEDS.iter().filter_map(|speed| {
+        let mut scenario = scenario.clone();
+        scenario.shared.speed = Some(*speed);
+        let (name, errors) = row(&scenario, Kind::PiRls, windows)?;
+        Some((format!("{name}, x {speed}"), errors))
+    });
+    let mean = |(_, errors): &Row| errors.iter().map(|error| error.ln()).sum::<f64>();
+    each.min_by(|a, b| mean(a).total_cmp(&mean(b)))
 }
 
 /// The places of settled windows, and of those that are over before anything settles.

@@ -77,12 +77,15 @@ impl Scenario {
             preview_s,
             delay,
             tuning: _,
+            speed,
         } = self.shared;
         require(from_zero(filter_s), "loop.filter_s", NOT_NEGATIVE)?;
         require(from_zero(tolerance), "loop.tolerance", NOT_NEGATIVE)?;
         require(from_zero(preview_s), "loop.preview_s", NOT_NEGATIVE)?;
         let few = delay.is_none_or(|samples| samples <= Delay::MOST + 1);
         require(few, "loop.delay", "must be at most 1001 samples")?;
+        let fine = speed.is_none_or(positive);
+        require(fine, "loop.speed", "must be above zero")?;
         self.check_adaptation()
             .or_else(|error| refuse("adaptation", &error.to_string()))?;
         self.check_events()

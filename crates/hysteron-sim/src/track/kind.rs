@@ -9,6 +9,9 @@ use serde::Deserialize;
 pub enum Kind {
     /// PID alone.
     Pid,
+    /// PI whose gains follow a linear model that is estimated while the loop runs
+    /// (`self_tuning.rs`). Only where a scenario names it.
+    PiRls,
     /// The inverse alone, *hold*.
     Inverse,
     /// The inverse alone, *anticipate*.
@@ -46,6 +49,7 @@ impl Kind {
     pub fn words(self) -> &'static str {
         match self {
             Self::Pid => "PID",
+            Self::PiRls => "PI/RLS",
             Self::Inverse => "inverse, hold",
             Self::InverseAnticipate => "inverse, anticipate",
             Self::InversePid => "inverse + PID, hold",
@@ -62,6 +66,7 @@ impl Kind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Pid => "pid",
+            Self::PiRls => "pi-rls",
             Self::Inverse => "inverse",
             Self::InverseAnticipate => "inverse-anticipate",
             Self::InversePid => "inverse-pid",
@@ -85,7 +90,13 @@ impl Kind {
         !alone.contains(&self)
     }
 
-    /// Whether its model learns.
+    /// Whether it needs a hysteresis model.
+    #[must_use]
+    pub fn has_model(self) -> bool {
+        !matches!(self, Self::Pid | Self::PiRls)
+    }
+
+    /// Whether its hysteresis model learns.
     #[must_use]
     pub fn adapts(self) -> bool {
         let adaptive = [

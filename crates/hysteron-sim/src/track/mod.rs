@@ -14,6 +14,7 @@ mod plant;
 mod reference;
 mod scenario;
 mod score;
+mod self_tuning;
 mod summary;
 mod tune;
 
@@ -26,9 +27,10 @@ pub use scenario::Scenario;
 pub use score::{ReversalLag, Score, Window, reversal_lags};
 pub use summary::{Median, Ratio};
 
-use hysteron::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
+use hysteron::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run_with};
 use hysteron::{Error, Model, Progress, Result, headings};
 use rayon::prelude::*;
+use self_tuning::SelfTuning;
 use std::sync::{Mutex, PoisonError};
 
 /// A noisy reading that stays the same to the last bit for this many samples is stuck.
@@ -123,12 +125,21 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
                     plant.write(drive);
                     plant.advance(time_s);
                 }
+                let mut tuner = match (kind, gains) {
+                    (Kind::PiRls, Some(gains)) => SelfTuning::new(scenario, &scheme, gains),
+                    _ => None,
+                };
+                let gains = tuner.as_ref().map(SelfTuning::first).or(gains);
                 let mut controller = controller(scenario, &scheme, &model, gains, *kind)?;
-                let trace = run(
+                let trace = run_with(
                     plant.as_mut(),
                     &mut controller,
                     &course,
                     Progress::new(&|_, _| tell(0)),
+                    &mut |controller, action| match tuner.as_mut().and_then(|t| t.push(action)) {
+                        Some(gains) => controller.retune(gains),
+                        None => Ok(()),
+                    },
                 )?;
                 let score = |window| Score::new(&trace, window, scheme.drives, &model);
                 let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
@@ -215,7 +226,7 @@ fn controller(
     kind: Kind,
 ) -> Result<Controller> {
     let compensator = match kind {
-        Kind::Pid => None,
+        _ if !kind.has_model() => None,
         _ if kind.adapts() => Some(options::compensator(&scenario.adaptation, model)?),
         _ => Some(Compensator::fixed(model)?),
     };

@@ -50,6 +50,8 @@ pub struct LoopOptions {
     pub delay: Option<usize>,
     /// Test and rule that the PID is tuned by. Default `relay`.
     pub tuning: Tuning,
+    /// How many times faster than the test asks `pi-rls` makes the closed loop, above 0. Default 1.
+    pub speed: Option<f64>,
 }
 
 /// Test and rule that the gains of the PID come from, the same for all controllers.

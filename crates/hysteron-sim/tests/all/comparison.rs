@@ -37,6 +37,28 @@ fn inverse_beats_pid_and_adaptation_the_fixed_inverse_on_the_relays() {
     compare(RELAYS, RELAYS_SINE, step);
 }
 
+/// The relay test asks these relays for a loop that is slower than it could be.
+#[test]
+fn pi_rls_is_better_than_the_pid_that_it_begins_with_and_has_no_model() {
+    let kinds = r#"controllers = ["pid", "pi-rls"]"#;
+    let run = |speed: f64| {
+        let mut scenario = scenario(&[RELAYS, kinds, RELAYS_SINE]);
+        scenario.shared.speed = Some(speed);
+        track(&scenario, Progress::NONE).unwrap()
+    };
+    let (slow, fast) = (run(1.0), run(2.0));
+    for w in 0..slow.windows.len() {
+        let errors = [
+            (&slow, Kind::Pid),
+            (&slow, Kind::PiRls),
+            (&fast, Kind::PiRls),
+        ];
+        let [pid, slow, fast] = errors.map(|(found, kind)| rmse(found, kind, w));
+        assert!(slow < 0.7 * pid && fast < 0.7 * slow, "{pid} {slow} {fast}");
+    }
+    assert!(slow.traces[1].prediction.iter().all(|y| y.is_nan()));
+}
+
 /// With the defaults, and with each learner by its name.
 #[test]
 fn every_learner_runs_in_a_scenario() {

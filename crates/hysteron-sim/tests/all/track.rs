@@ -150,6 +150,11 @@ fn a_refusal_names_the_field() {
         ),
         (
             SPRING,
+            format!("loop = {{ speed = 0 }}\n{SPRING_SINE}"),
+            "`loop.speed`",
+        ),
+        (
+            SPRING,
             format!("loop = {{ preview_s = -0.1 }}\n{SPRING_SINE}"),
             "`loop.preview_s`",
         ),

@@ -352,6 +352,33 @@ impl Controller {
         }
     }
 
+    /// Changes the gains of the feedback, as a gain schedule or a self-tuning regulator does. The
+    /// integral stays, so the drive changes only by what the new gains make of the error of now.
+    ///
+    /// ```
+    /// use hysteron::control::{Controller, Gains, Reading, Reference, Scheme};
+    /// let gains = Gains { gain: 2.0, integral_s: 0.0, derivative_s: 0.0 };
+    /// let mut controller =
+    ///     Controller::new(Scheme { pid: Some(gains), ..Scheme::new(0.01, (0.0, 10.0)) })?;
+    /// controller.retune(Gains { gain: 3.0, ..gains })?;
+    /// let target = Reference { output: 2.0, heading: None };
+    /// let action = controller.step(target, Reading { output: 1.0, input: None })?;
+    /// assert_eq!(action.drive, 3.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Gains::check`], and [`Error::Control`] for a loop without feedback.
+    pub fn retune(&mut self, gains: Gains) -> Result<()> {
+        gains.check()?;
+        match &mut self.pid {
+            Some(pid) => pid.set(gains),
+            None => return Err(Error::Control("there is no feedback in this loop".into())),
+        }
+        self.scheme.pid = Some(gains);
+        Ok(())
+    }
+
     /// How long the output has stood still to the last bit where it has to move, s; `None` where
     /// its sensor works. It has to move where the model expects 5 % of its range; without a model,
     /// where the drive has gone almost half its way to a limit since, and no further, once the

@@ -67,7 +67,7 @@ pub use controller::{Action, Controller, Reference};
 pub use device::{Device, Disturbance, Reading, SimulatedPlant};
 pub use hysteron_core::control::{Pid, Safety};
 pub use pid::Gains;
-pub use run::{Course, run};
+pub use run::{Course, run, run_with};
 pub use scheme::{InnerLoop, Scheme};
 pub use status::LoopStatus;
 pub use trace::{Snapshot, Trace};

@@ -1,6 +1,6 @@
 //! Runs a controller on a simulated plant, sample by sample, and records the run.
 
-use super::{Controller, Disturbance, Reference, SimulatedPlant, Trace};
+use super::{Action, Controller, Disturbance, Reference, SimulatedPlant, Trace};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
@@ -50,6 +50,21 @@ pub fn run(
     course: &Course<'_>,
     progress: Progress<'_>,
 ) -> Result<Trace> {
+    run_with(plant, controller, course, progress, &mut |_, _| Ok(()))
+}
+
+/// As [`run`], with `after` each sample: it sees what the controller did, and may change it
+/// ([`Controller::retune`], [`Controller::renew`]).
+///
+/// # Errors
+/// As [`run`], and the error that `after` returns.
+pub fn run_with(
+    plant: &mut dyn SimulatedPlant,
+    controller: &mut Controller,
+    course: &Course<'_>,
+    progress: Progress<'_>,
+    after: &mut dyn FnMut(&mut Controller, &Action) -> Result<()>,
+) -> Result<Trace> {
     let mut trace = Trace::default();
     let mut events = course.events.iter().peekable();
     let count = course.reference.len();
@@ -67,6 +82,7 @@ pub fn run(
         plant.write(action.drive);
         plant.advance(controller.interval_s());
         trace.record(count, output, (reading, truth), (controller, &action));
+        after(controller, &action)?;
     }
     Ok(trace)
 }
