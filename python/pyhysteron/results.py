@@ -341,11 +341,14 @@ class HeldOut(_Result):
     without_dynamics : bool
         Whether neither a dead time, a ring nor a lag was looked for, because more than the end of
         a recording was held out.
+    at_end : bool
+        Whether a share of the branches was held out at the end, and not spread over each recording.
     """
 
     model: Errors
     rivals: tuple[RivalErrors, ...]
     without_dynamics: bool = False
+    at_end: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)

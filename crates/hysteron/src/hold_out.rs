@@ -23,6 +23,9 @@ pub struct HeldOut {
     /// Whether neither a dead time, a ring nor a lag was looked for, because more than the end of a
     /// recording was held out.
     pub without_dynamics: bool,
+    /// Whether a share of the branches was held out at the end ([`Recording::split_end`]), and not
+    /// spread over each recording.
+    pub at_end: bool,
 }
 
 /// Stands in the record of a fit that was tested on a part of its recordings alone.
@@ -73,6 +76,7 @@ impl HeldOut {
             model: errors(&entry["model"])?,
             rivals: rivals.collect::<Option<_>>()?,
             without_dynamics: entry["without_dynamics"].as_bool().unwrap_or_default(),
+            at_end: entry["at_end"].as_bool().unwrap_or_default(),
         })
     }
 
@@ -92,8 +96,8 @@ impl HeldOut {
 /// is of the range of the whole output.
 ///
 /// A model that depends on time needs every sample before a row. So [`HoldOut::Branches`] holds out
-/// the last branches where such a stage is asked for; and where one is looked for, if these are like
-/// the rest: within its range of inputs, and over half of it. Else they are spread.
+/// the last branches where such a stage is asked for; and where one is looked for, if these are
+/// like the rest: within its range of inputs, and over half of it. Else they are spread.
 ///
 /// If rows at the beginning or in the middle are held out, the state of the operators after them is
 /// not known. Then the start is [`Start::Unknown`], whatever `fit` says.
@@ -116,8 +120,8 @@ impl HeldOut {
 ///
 /// # Errors
 /// - As [`Fit::run`] and [`Recording::split`].
-/// - [`Error::Fit`] for a stage that depends on time and is asked for, if rows are held out that are
-///   not at the end. [`crate::Dynamics::Auto`] then looks for nothing.
+/// - [`Error::Fit`] for a stage that depends on time and is asked for, if rows are held out that
+///   are not at the end. [`crate::Dynamics::Auto`] then looks for nothing.
 pub fn fit_holding_out(
     fit: &Fit<'_>,
     recordings: &(impl AsRef<[Recording]> + ?Sized),
@@ -150,9 +154,9 @@ pub fn fit_holding_out(
         true => split_ends(recordings, what)?,
         false => None,
     };
-    let splits = match ends {
-        Some((ends, is_alike)) if is_alike || fit.asks_for_time() => ends,
-        _ => split_each(recordings, what)?,
+    let (splits, at_end) = match ends {
+        Some((ends, are_alike)) if are_alike || fit.asks_for_time() => (ends, true),
+        _ => (split_each(recordings, what)?, false),
     };
     let training: Vec<Recording> = splits.iter().flat_map(|s| s.training.clone()).collect();
     let begins_inside = splits.iter().any(|split| split.begins_inside);
@@ -195,7 +199,7 @@ pub fn fit_holding_out(
     let outputs = simulated(&model, &all)?;
     let is_held = |n: usize| held.get(n).copied().unwrap_or(true);
     let mut report = compare(&training, &all, &outputs, is_held)?;
-    report.without_dynamics = without_dynamics;
+    (report.without_dynamics, report.at_end) = (without_dynamics, at_end);
     report.record_in(&mut model);
     if let Some(fit) = &mut model.fit
         && others.is_empty()
@@ -278,5 +282,6 @@ fn compare(
         model,
         rivals,
         without_dynamics: false,
+        at_end: false,
     })
 }

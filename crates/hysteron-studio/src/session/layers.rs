@@ -6,7 +6,6 @@ use super::fitted::Spans;
 use super::fitting::held_part;
 use super::id::Id;
 use super::opened::Opened;
-use super::parts::Parts;
 use super::seen::Seen;
 use super::state::Session;
 use super::thinned::{Points, when};
@@ -96,34 +95,17 @@ impl Session {
                 }
             }
             Some(part) => {
-                let opened = fitted.files.iter().filter_map(|id| self.file(*id).ok());
-                let recordings = opened.flat_map(|file| file.parts.iter().flat_map(Parts::all));
-                let count = |one: &Recording| Some(one.split(&part).ok()?.held_out);
-                let each = recordings.filter_map(count);
-                let (several, spread) = each.fold((0, 0), |(several, spread), held| {
-                    (
-                        several + 1,
-                        spread + held.iter().filter(|held| **held).count(),
-                    )
-                });
-                let tested = fitted.tested().map_or(spread, |errors| errors.samples);
+                let held_out = fitted.judged.held_out.as_ref();
+                let at_end = held_out.is_some_and(|held_out| held_out.at_end);
                 let mut begin = 0;
                 for recording in parts.all() {
                     let end = begin + recording.len();
-                    match recording.split(&part) {
-                        Ok(split) if tested == spread => {
-                            held[begin..end].copy_from_slice(&split.held_out);
-                        }
-                        // What depends on time was tested on the end. Of several recordings it is
-                        // not known where each end begins.
-                        Ok(_) if several == 1 => {
-                            held[begin..end]
-                                .iter_mut()
-                                .rev()
-                                .take(tested)
-                                .for_each(|held| *held = true);
-                        }
-                        _ => {}
+                    let split = match part {
+                        HoldOut::Branches(share) if at_end => recording.split_end(share),
+                        _ => recording.split(&part),
+                    };
+                    if let Ok(split) = split {
+                        held[begin..end].copy_from_slice(&split.held_out);
                     }
                     begin = end;
                 }

@@ -13,8 +13,8 @@ const MOST: f64 = 1.0 / 3.0;
 /// Branches with fewer samples than this are not held out.
 const SHORTEST: usize = 3;
 
-/// An end stands for the rest where its input moves over this share of the whole range at least. The
-/// last loops of an input that dies down would be easier than most.
+/// An end stands for the rest where its input moves over this share of the whole range at least.
+/// The last loops of an input that dies down would be easier than most.
 const ALIKE: f64 = 0.5;
 
 /// What takes no part in a fit, to test it.
@@ -247,21 +247,28 @@ impl Recording {
         })
     }
 
-    /// Holds the last branches out, so that the rest is the recording's beginning. Returns also
-    /// whether they are like the rest: their input stays within its range, and moves over a good part
-    /// of it.
-    fn split_last_branches(&self, share: f64) -> Result<(Split, bool)> {
+    /// As [`Recording::split`] with [`HoldOut::Branches`], but the last branches are held out. The rest
+    /// is the recording's beginning.
+    ///
+    /// # Errors
+    /// As [`Recording::split`].
+    pub fn split_end(&self, share: f64) -> Result<Split> {
+        self.check()?;
         let (all, can_be) = self.branches(share)?;
         let count = ((share * all.len() as f64).round() as usize).max(1);
         let held = &can_be[can_be.len().saturating_sub(count)..];
         let first = held.first().map_or(self.len(), |b| all[*b].start);
+        Ok(self.parted((0..self.len()).map(|n| n >= first).collect()))
+    }
+
+    /// Whether the end behind so many samples is like the rest: its input stays within the range of
+    /// the rest, and moves over a good part of it.
+    fn end_is_alike(&self, first: usize) -> bool {
         let (low, high) = range(&self.input[..first]);
         let (from, to) = range(&self.input[first..]);
         let slight = usual_tolerance(&self.input);
-        let is_alike =
-            from >= low - slight && to <= high + slight && to - from >= ALIKE * (high - low);
-        let held_out = (0..self.len()).map(|n| n >= first).collect();
-        Ok((self.parted(held_out), is_alike))
+        let is_within = from >= low - slight && to <= high + slight;
+        is_within && to - from >= ALIKE * (high - low)
     }
 
     /// The parts on both sides of what is held out.
@@ -295,8 +302,8 @@ pub(crate) fn split_each(recordings: &[Recording], what: &HoldOut) -> Result<Vec
     Ok(recordings.iter().map(parted).collect())
 }
 
-/// The last of the branches of each recording that [`HoldOut::Branches`] holds out, and whether they
-/// are like the rest in each; `None` where something else is held out.
+/// Each recording parted as [`Recording::split_end`] does, and whether every end is like the rest;
+/// `None` where something else than [`HoldOut::Branches`] is held out.
 pub(crate) fn split_ends(
     recordings: &[Recording],
     what: &HoldOut,
@@ -304,10 +311,12 @@ pub(crate) fn split_ends(
     let Some(HoldOut::Branches(share)) = what.part() else {
         return Ok(None);
     };
-    recordings.iter().try_for_each(Recording::check)?;
-    let ends = recordings.iter().map(|one| one.split_last_branches(*share));
-    let (splits, alike): (Vec<_>, Vec<_>) = ends.collect::<Result<Vec<_>>>()?.into_iter().unzip();
-    Ok(Some((splits, alike.into_iter().all(|is_alike| is_alike))))
+    let ends = recordings.iter().map(|one| one.split_end(*share));
+    let ends = ends.collect::<Result<Vec<_>>>()?;
+    let first = |split: &Split| split.training.first().map_or(0, Recording::len);
+    let mut pairs = recordings.iter().zip(&ends);
+    let are_alike = pairs.all(|(one, split)| one.end_is_alike(first(split)));
+    Ok(Some((ends, are_alike)))
 }
 
 /// Which of so many rows are in these spans.
