@@ -59,10 +59,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             clipped = inputs;
         }
     }
-    let verdict = match &what {
-        Some(what) => Verdict::of_fit_holding_out(&model, &recordings, what)?,
-        None => Verdict::of_fit(&model, &recordings)?,
-    };
+    let verdict = Verdict::of_fit_holding_out(&model, &recordings, what.as_ref())?;
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => {

@@ -23,10 +23,7 @@ impl Judged {
         what: Option<&HoldOut>,
         held_out: Option<HeldOut>,
     ) -> Result<Self, Fault> {
-        let verdict = match what {
-            Some(what) => Verdict::of_fit_holding_out(model, recordings, what)?,
-            None => Verdict::of_fit(model, recordings)?,
-        };
+        let verdict = Verdict::of_fit_holding_out(model, recordings, what)?;
         let lines = verdict.lines(spelt).into_iter();
         let mut all: Vec<Advice> = advice(model, recordings)?;
         all.extend(held_out.iter().flat_map(HeldOut::advice));

@@ -1,6 +1,7 @@
 //! Whether a model is good enough, for what, why it is not better, and what to do next.
 //!
-//! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for;
+//! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for,
+//! and judges it; `worst` is where it errs most;
 //! `tested` reads from the record of a fit what it was tested on; `parts` tells what an error
 //! consists of, `readings` which of it is in readings that are wrong, and `cause` what is behind it;
 //! `speed` tells whether more than one was recorded;
@@ -14,65 +15,27 @@ mod serial;
 mod speed;
 mod tested;
 mod words;
+mod worst;
 
 pub use cause::Cause;
 pub use grade::{Basis, Grade};
 pub use parts::{ErrorPart, PartKind, error_parts};
+pub use worst::Worst;
 
-use crate::error::{Place, Result};
+use crate::error::Result;
 use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::{Forward, forward};
 use crate::hold_out::held_out;
-use crate::model::{Model, Outlier, Start};
+use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Quantity, Recording, no_recordings};
-use crate::rivals::{Rival, RivalKind, SMALL, wins};
+use crate::rivals::{Rival, RivalKind, SMALL};
 use crate::series::Errors;
 use crate::series::coarse::hides_noise;
 use crate::series::noise::noise;
-use grade::{GOOD, OF_NOISE, USABLE};
-use serde::Serialize;
+use grade::GOOD;
 use std::borrow::Cow;
 use tested::{Tested, best_of, on_others};
-
-/// The sample with the largest error.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Worst {
-    /// The file of a recording that was held out; `None` in what was fitted or evaluated.
-    pub file: Option<String>,
-    /// Index of the recording, from 0.
-    pub recording: usize,
-    /// Index of the sample in it, from 0.
-    pub sample: usize,
-    /// Where it stands in the file, if rows count otherwise there.
-    #[serde(skip)]
-    pub place: Option<Place>,
-    /// Its time in seconds; `None` without time.
-    pub time: Option<f64>,
-    /// The input there.
-    pub input: f64,
-    /// The output measured.
-    pub measured: f64,
-    /// The output of the model.
-    pub modelled: f64,
-}
-
-impl Worst {
-    /// Which sample it is, in words: `recording 2, sample 124 (line 130)`, counted from 1.
-    #[must_use]
-    pub fn named(&self) -> String {
-        let recording = match (&self.file, self.recording) {
-            (Some(file), _) => format!("{file}, "),
-            (None, 0) => String::new(),
-            (None, number) => format!("recording {}, ", number + 1),
-        };
-        let place = self.place.map(|place| format!(" ({place})"));
-        format!(
-            "{recording}sample {}{}",
-            self.sample + 1,
-            place.unwrap_or_default()
-        )
-    }
-}
+use worst::{rmse_without, worst};
 
 /// Whether a model is good enough, and if not, why.
 ///
@@ -182,18 +145,19 @@ impl Verdict {
         Self::of_evaluation(model, &looked_at, &evaluation)
     }
 
-    /// The verdict on a model that was fitted to `recordings` while `what` was held out. Where other
-    /// recordings are among it, these tell, and the rivals are those fitted to `recordings`
-    /// ([`crate::held_out`]). Else as [`Verdict::of_fit`].
+    /// The verdict on a model that was fitted to `recordings` while `what` was held out, if anything
+    /// was. Where other recordings are among it, these tell, and the rivals are those fitted to
+    /// `recordings` ([`crate::held_out`]). Else as [`Verdict::of_fit`].
     ///
     /// # Errors
     /// As [`crate::evaluate`].
     pub fn of_fit_holding_out(
         model: &Model,
         recordings: &(impl AsRef<[Recording]> + ?Sized),
-        what: &HoldOut,
+        what: Option<&HoldOut>,
     ) -> Result<Self> {
-        let others: Vec<Recording> = what.recordings().into_iter().cloned().collect();
+        let others = what.into_iter().flat_map(HoldOut::recordings);
+        let others: Vec<Recording> = others.cloned().collect();
         if others.is_empty() {
             return Self::of_fit(model, recordings);
         }
@@ -315,60 +279,6 @@ impl Verdict {
         verdict.worst = worst(recordings, output, outliers);
         Ok(verdict)
     }
-
-    /// Finds the grade and puts the causes in order.
-    fn judge(&mut self) {
-        // Of an output that does not move, any error is too much.
-        let percent = self.percent.unwrap_or(match self.rmse > 0.0 {
-            true => f64::INFINITY,
-            false => 0.0,
-        });
-        // What a few numbers explain is no noise.
-        let explained = self
-            .causes
-            .iter()
-            .any(|cause| matches!(cause, Cause::Part(_) | Cause::Elsewhere { .. }));
-        let by_error = match percent {
-            _ if self.rmse <= OF_NOISE * self.noise && percent <= USABLE && !explained => {
-                Grade::Good
-            }
-            p if p <= GOOD => Grade::Good,
-            p if p <= USABLE => Grade::Usable,
-            _ => Grade::Poor,
-        };
-        let rival = self.rival.as_ref();
-        let better = rival.filter(|(_, rival)| wins(*rival, percent));
-        let rival_wins = better.is_some();
-        self.causes
-            .extend(better.map(|(name, percent)| Cause::Rival {
-                name: name.clone(),
-                percent: *percent,
-            }));
-        let outside = self
-            .causes
-            .iter()
-            .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
-        let guessed = self.causes.iter().any(|cause| {
-            let few = matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. });
-            few || matches!(cause, Cause::LoadsLeftOut { .. } | Cause::OneSpeed { .. })
-        });
-        self.grade = match (by_error, rival_wins) {
-            _ if outside => Grade::Poor,
-            (Grade::Good, _) if guessed => Grade::Usable,
-            (Grade::Good, true) => Grade::Usable,
-            (Grade::Usable, true) => Grade::Poor,
-            (grade, _) => grade,
-        };
-        // A good fit is a promise only where something was left out; a bad one needs no test.
-        if self.basis == Basis::Fitted && self.grade != Grade::Poor {
-            self.grade = Grade::Untested;
-        }
-        if percent > SMALL && !explained {
-            self.causes.extend(cause::of_noise(self.noise, self.rmse));
-        }
-        self.causes
-            .sort_by(|a, b| b.weight().total_cmp(&a.weight()));
-    }
 }
 
 /// As many of the recordings as are evaluated beside a fit: all, or the beginning of the first.
@@ -395,52 +305,6 @@ fn line(recordings: &[Recording]) -> Result<Option<(String, f64)>> {
     let errors = Errors::between(&measured, &predicted, |_| true);
     let percent = errors.and_then(|errors| errors.nrmse_percent);
     Ok(percent.map(|percent| (LINE.to_owned(), percent)))
-}
-
-/// The errors of the outputs of a model over recordings, and where they are, but for `outliers`.
-fn errors<'a>(
-    recordings: &'a [Recording],
-    modelled: &'a [f64],
-    outliers: &'a [Outlier],
-) -> impl Iterator<Item = (f64, usize, usize, f64)> + 'a {
-    let each = recordings.iter().enumerate();
-    let samples = each.flat_map(|(n, recording)| {
-        let measured = recording.output.iter().enumerate();
-        measured.map(move |(sample, y)| (n, sample, *y))
-    });
-    let is_outlier = move |place: (usize, usize)| {
-        let mut outliers = outliers.iter();
-        outliers.any(|outlier| (outlier.recording, outlier.sample) == place)
-    };
-    let errors = samples.zip(modelled);
-    let errors = errors.filter(move |((n, sample, _), _)| !is_outlier((*n, *sample)));
-    errors.map(|((n, sample, y), modelled)| ((y - modelled).abs(), n, sample, *modelled))
-}
-
-/// The error without `outliers`; `None` without a series.
-fn rmse_without(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Option<f64> {
-    let squares = errors(recordings, modelled, outliers).map(|(error, ..)| error * error);
-    let (count, sum) = squares.fold((0.0, 0.0), |(count, sum), square| {
-        (count + 1.0, sum + square)
-    });
-    (count > 0.0).then(|| f64::sqrt(sum / count))
-}
-
-/// Where a model errs most.
-fn worst(recordings: &[Recording], modelled: &[f64], outliers: &[Outlier]) -> Option<Worst> {
-    let errors = errors(recordings, modelled, outliers);
-    let (_, number, sample, modelled) = errors.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let recording = &recordings[number];
-    Some(Worst {
-        file: None,
-        recording: number,
-        sample,
-        place: recording.place(sample),
-        time: recording.time.as_ref().map(|time| time[sample]),
-        input: recording.input[sample],
-        measured: recording.output[sample],
-        modelled,
-    })
 }
 
 /// The white noise of the readings, as a root mean square over recordings; of one whose input jumps

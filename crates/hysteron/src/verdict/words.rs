@@ -136,10 +136,9 @@ impl Verdict {
             Cause::FewBranches {
                 branches,
                 different,
-            } if *branches > 2 * different => format!(
-                "only {different} branches that were recorded are different, the other {} repeat \
-                 them: what other paths do is a guess",
-                branches - different
+            } if branches > different => format!(
+                "only {different} branches that were recorded are different, the other ones repeat \
+                 them: what other paths do is a guess"
             ),
             Cause::FewBranches { branches, .. } => {
                 format!("only {branches} branches were recorded: what other paths do is a guess")

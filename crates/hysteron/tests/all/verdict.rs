@@ -496,7 +496,7 @@ fn what_was_held_out_is_judged_by_itself() {
     second.input.iter_mut().for_each(|x| *x += 1e-6);
     let what = HoldOut::Recordings(vec![second]);
     let (model, report) = fit_holding_out(&Fit::new().bootstrap(0), &first, &what).unwrap();
-    let verdict = Verdict::of_fit_holding_out(&model, &first, &what).unwrap();
+    let verdict = Verdict::of_fit_holding_out(&model, &first, Some(&what)).unwrap();
     assert_eq!(verdict.basis, Basis::OtherRecording);
     assert_eq!(verdict.percent, report.model.nrmse_percent);
     let best = report
@@ -519,7 +519,7 @@ fn what_was_held_out_is_judged_by_itself() {
     // A part of the recording that was fitted is judged with it.
     let part = HoldOut::Branches(0.2);
     let (model, _) = fit_holding_out(&Fit::new().bootstrap(0), &first, &part).unwrap();
-    let of_part = Verdict::of_fit_holding_out(&model, &first, &part).unwrap();
+    let of_part = Verdict::of_fit_holding_out(&model, &first, Some(&part)).unwrap();
     assert_eq!(of_part, Verdict::of_fit(&model, &first).unwrap());
 }
 
