@@ -42,7 +42,8 @@ fn columns(args: &args::Inspect) -> Result<()> {
         ]);
     }
     print(&format!(
-        "{}: {} rows\n{}\nName --input and --output for reversals and excitation, or let `hysteron start` find them.",
+        "{}: {} rows\n{}\nName --input and --output for reversals and excitation, or let `hysteron \
+         start` find them.",
         args.file.display(),
         summary.rows,
         text::table(&lines)

@@ -156,9 +156,10 @@ pub(crate) struct Stages {
 #[command(next_help_heading = "Tests")]
 pub(crate) struct Tests {
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:
-    /// `branches:20%` or just `20%` (a share up to 33 %, spread over the recording, with `--time` the
-    /// last ones), `rows:A-B,C-D` (counted from 1, after the preparation, through all that is
-    /// fitted), or another recording. It may be given several times: one part, and any number of files
+    /// `branches:20%` or just `20%` (a share up to 33 %, spread over the recording, with `--time`
+    /// the last ones), `rows:A-B,C-D` (counted from 1, after the preparation, through all that is
+    /// fitted), or another recording. It may be given several times: one part, and any number of
+    /// files
     #[arg(long, value_name = "WHAT|FILE", value_parser = parse_hold_out)]
     pub(crate) hold_out: Vec<HoldOut>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 25

@@ -93,8 +93,8 @@ impl Scene {
             .collect()
     }
 
-    /// Where the better PI/RLS has a smaller error than the better one of the two with an inverse and
-    /// PID, by more than a factor of `most`.
+    /// Where the better PI/RLS has a smaller error than the better one of the two with an inverse
+    /// and PID, by more than a factor of `most`.
     pub(super) fn won_by_pi_rls(&self, most: f64) -> Vec<String> {
         let rows = self
             .rows

@@ -3,10 +3,10 @@
 //! Wittenmark 1995, chapters 2, 3 and 11).
 //!
 //! The model is `y(n) = a y(n−1) + b u(n−1) + c`, estimated by recursive least squares with
-//! forgetting. From its gain `k` and time constant `τ` follow the gains of SIMC (Skogestad 2003) for
-//! a closed loop with the time constant that the tuning test asked for, or one that is so many times
-//! faster. It begins with the model whose gains are those of the test, so that it has all that the
-//! PID has.
+//! forgetting. From its gain `k` and time constant `τ` follow the gains of SIMC (Skogestad 2003)
+//! for a closed loop with the time constant that the tuning test asked for, or one that is so many
+//! times faster. It begins with the model whose gains are those of the test, so that it has all
+//! that the PID has.
 
 use super::Scenario;
 use hysteron::control::{Action, Gains, Scheme};
@@ -34,8 +34,9 @@ pub(super) struct SelfTuning {
     first_lag_s: f64,
     /// Wanted time constant of the closed loop, s.
     closed_s: f64,
-    /// Time between estimates, s, and the samples in it. A quarter of the time constant of the closed
-    /// loop: from sample to sample, noise is larger than what moves, and makes lags look short.
+    /// Time between estimates, s, and the samples in it. A quarter of the time constant of the
+    /// closed loop: from sample to sample, noise is larger than what moves, and makes lags look
+    /// short.
     interval_s: f64,
     samples: u32,
     commands: (f64, f64),
@@ -52,8 +53,8 @@ pub(super) struct SelfTuning {
 }
 
 impl SelfTuning {
-    /// A tuner that begins with the model whose gains are those `of_test`. `None` where these have no
-    /// integral, or where the scenario has no tolerance, so that no noise is known.
+    /// A tuner that begins with the model whose gains are those `of_test`. `None` where these have
+    /// no integral, or where the scenario has no tolerance, so that no noise is known.
     pub(super) fn new(scenario: &Scenario, scheme: &Scheme, of_test: Gains) -> Option<Self> {
         let dt = scenario.interval_s;
         let latency = scheme.delay.unwrap_or(1) as f64 * dt + scheme.filter_s;

@@ -12,7 +12,8 @@ use hysteron::{HoldOut, Model, held_out};
 use std::sync::Arc;
 
 impl Fitted {
-    /// The files whose samples are others now than this fit saw. One that is closed is none of them.
+    /// The files whose samples are others now than this fit saw. One that is closed is none of
+    /// them.
     pub(super) fn changed(&self, files: &[Opened]) -> Vec<Id> {
         let other = |file: &&Opened| {
             let seen = self.samples.get(&file.id);

@@ -15,8 +15,8 @@ pub(super) struct Judged {
 }
 
 impl Judged {
-    /// What is said of a model that was fitted to `recordings` while `what` was held out, which gave
-    /// `held_out`. Its record has that, too.
+    /// What is said of a model that was fitted to `recordings` while `what` was held out, which
+    /// gave `held_out`. Its record has that, too.
     pub(super) fn of(
         model: &Model,
         recordings: &[Recording],

@@ -1,14 +1,14 @@
 //! The session: what is open, without a transport. A request in, a response out.
 //!
-//! `request` defines both, `handle` leads from one to the other, `fault` is what is wrong. `state` is
-//! what the session keeps. `opened` is a file, `parts` its recordings, `prepare` their preparation,
-//! `design` the experiment that is missing. `fitting` asks for a fit, `job` is its work, `fitted` what
-//! it found and `judged` what is said of it, `anew` where a file has changed since; `carried` has
-//! these as bytes. `view` says what a picture shows. `look` and `plane` make the pictures, with the
-//! lines of `seen` from what `thinned` leaves; `layers` is drawn besides them, and `pick` points at a
-//! sample. `drive` is a model moved by hand, `path` what it may follow, and `follow` the way there.
-//! `take_home` is what can be taken away, with `c_archive`; `commands` is the same work as text,
-//! `saved` the session as a file.
+//! `request` defines both, `handle` leads from one to the other, `fault` is what is wrong. `state`
+//! is what the session keeps. `opened` is a file, `parts` its recordings, `prepare` their
+//! preparation, `design` the experiment that is missing. `fitting` asks for a fit, `job` is its
+//! work, `fitted` what it found and `judged` what is said of it, `anew` where a file has changed
+//! since; `carried` has these as bytes. `view` says what a picture shows. `look` and `plane` make
+//! the pictures, with the lines of `seen` from what `thinned` leaves; `layers` is drawn besides
+//! them, and `pick` points at a sample. `drive` is a model moved by hand, `path` what it may
+//! follow, and `follow` the way there. `take_home` is what can be taken away, with `c_archive`;
+//! `commands` is the same work as text, `saved` the session as a file.
 
 mod anew;
 mod argument;

@@ -125,9 +125,9 @@ impl Session {
             .transpose()
     }
 
-    /// The sample with the largest residual of a fit, in the files that the verdict is about: those for
-    /// validation, with what else was held out, or else those fitted. Readings that the fit took for
-    /// outliers do not count.
+    /// The sample with the largest residual of a fit, in the files that the verdict is about: those
+    /// for validation, with what else was held out, or else those fitted. Readings that the fit
+    /// took for outliers do not count.
     pub(super) fn worst(&mut self, fit: Id) -> Result<WorstView, Fault> {
         let fitted = self.fitted(fit)?;
         let is_tested = !fitted.validated.is_empty();

@@ -48,7 +48,8 @@ pub struct PlaneView {
 pub struct SampleView {
     /// Its number among the samples of the file, counted from 1.
     pub number: usize,
-    /// Where it stands in the file, as `line 12`; `None` where a preparation has made other samples.
+    /// Where it stands in the file, as `line 12`; `None` where a preparation has made other
+    /// samples.
     pub place: Option<String>,
     /// Its time in seconds, or its number from 1.
     pub time: f64,

@@ -163,8 +163,8 @@ pub enum Request {
 }
 
 impl Request {
-    /// Whether it asks for a part of a picture. A page may ask for one of a file that it, or another
-    /// page, has just closed.
+    /// Whether it asks for a part of a picture. A page may ask for one of a file that it, or
+    /// another page, has just closed.
     #[must_use]
     pub(super) fn draws(&self) -> bool {
         matches!(

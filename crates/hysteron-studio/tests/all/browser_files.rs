@@ -70,8 +70,8 @@ fn messy(spike: f64) -> String {
     rows.collect()
 }
 
-/// Two files with the same faults: one click repairs both, one prepares the second as the first. The
-/// fit says that its test has changed, and its worst sample is of the file that tested it.
+/// Two files with the same faults: one click repairs both, one prepares the second as the first.
+/// The fit says that its test has changed, and its worst sample is of the file that tested it.
 #[test]
 fn one_step_serves_all_files_and_old_errors_are_told() {
     let Some((mut browser, studio, tab)) = Way::Server.open(1 << 28, (1280, 900)) else {
@@ -143,7 +143,8 @@ fn one_step_serves_all_files_and_old_errors_are_told() {
     studio.end();
 }
 
-/// A staircase in a file is opened in the drive, its column is found, and what came of it is offered.
+/// A staircase in a file is opened in the drive, its column is found, and what came of it is
+/// offered.
 #[test]
 fn a_staircase_in_a_file_is_followed() {
     let Some((mut browser, studio, tab)) = Way::Server.open(1 << 28, (1280, 900)) else {
@@ -201,8 +202,8 @@ fn a_staircase_in_a_file_is_followed() {
     studio.end();
 }
 
-/// A file that is closed while it is drawn, and an operator that never switches, are no errors. Where
-/// the only fit cannot be run there are no empty axes.
+/// A file that is closed while it is drawn, and an operator that never switches, are no errors.
+/// Where the only fit cannot be run there are no empty axes.
 #[test]
 fn what_is_not_there_is_not_drawn() {
     let Some((mut browser, studio, tab)) = Way::Server.open(1 << 28, (1280, 900)) else {

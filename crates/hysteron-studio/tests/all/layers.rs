@@ -213,8 +213,8 @@ fn the_archive_of_c_builds_and_runs() {
     }
 }
 
-/// A fit that looks for what comes late is tested on the end, where that is like the rest: there it is
-/// drawn, with as many samples as were tested.
+/// A fit that looks for what comes late is tested on the end, where that is like the rest: there it
+/// is drawn, with as many samples as were tested.
 #[test]
 fn an_end_that_was_held_out_is_drawn_at_the_end() {
     let mut text = "time [s],T [degC],lift [mm]\n".to_owned();

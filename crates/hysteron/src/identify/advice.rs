@@ -69,8 +69,8 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
-    /// Neither a dead time, a ring nor a lag was looked for, because more than the end of a recording
-    /// was held out.
+    /// Neither a dead time, a ring nor a lag was looked for, because more than the end of a
+    /// recording was held out.
     NoDynamics,
     /// The first input does not determine the state of some operators, and all of these were taken
     /// as off.
@@ -143,8 +143,8 @@ impl fmt::Display for Advice {
                 )
             }
             Self::NoDynamics => f.write_str(
-                "neither a dead time, a ring nor a lag was looked for: they need every sample before a \
-                 row, and more than the end was held out",
+                "neither a dead time, a ring nor a lag was looked for: they need every sample \
+                 before a row, and more than the end was held out",
             ),
             Self::OpenStart { operators } => write!(
                 f,
@@ -249,12 +249,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     let noisy = recordings.iter().find_map(false_reversals);
     let fit = model.fit.as_ref();
     let outliers = fit.map_or(&[][..], |fit| &fit.outliers);
-    advice.extend(
-        recordings
-            .iter()
-            .enumerate()
-            .flat_map(|(n, r)| spikes(r, n, outliers)),
-    );
+    advice.extend(spikes(recordings, outliers));
     if let Some(fit) = &model.fit {
         if let Some(noisy) = noisy {
             advice.push(noisy);
@@ -290,8 +285,8 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     Ok(advice)
 }
 
-/// The warnings for recordings to which nothing was fitted: readings that stand out or were held, and
-/// reversals that are noise.
+/// The warnings for recordings to which nothing was fitted: readings that stand out or were held,
+/// and reversals that are noise.
 ///
 /// ```
 /// use hysteron::{Recording, advice_before_fit};
@@ -304,34 +299,34 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
 /// ```
 #[must_use]
 pub fn advice_before_fit(recordings: &[Recording]) -> Vec<Advice> {
-    let each = recordings.iter().enumerate();
-    let spikes = each.flat_map(|(number, recording)| spikes(recording, number, &[]));
-    spikes
-        .chain(recordings.iter().find_map(false_reversals))
-        .collect()
+    let noisy = recordings.iter().find_map(false_reversals);
+    spikes(recordings, &[]).chain(noisy).collect()
 }
 
-/// The wrong readings of each series of the recording with this number.
-fn spikes(recording: &Recording, number: usize, outliers: &[Outlier]) -> Vec<Advice> {
-    let is_outlier = |sample| {
-        let mut outliers = outliers.iter();
-        outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
-    };
-    let [input, mut output] = recording.wrong_readings();
-    output.retain(|sample| !is_outlier(*sample));
-    let of = |found: Vec<usize>, quantity: &Quantity| {
-        found.first().map(|first| Advice::Spikes {
-            series: quantity.name.clone(),
-            samples: found.len(),
-            first: first + 1,
-            place: recording.place(*first),
-        })
-    };
-    let both = [
-        of(input, &recording.input_quantity),
-        of(output, &recording.output_quantity),
-    ];
-    both.into_iter().flatten().collect()
+/// The wrong readings of each series of each recording, but for `outliers`.
+fn spikes(recordings: &[Recording], outliers: &[Outlier]) -> impl Iterator<Item = Advice> {
+    let each = recordings.iter().enumerate();
+    each.flat_map(|(number, recording)| {
+        let is_outlier = |sample| {
+            let mut outliers = outliers.iter();
+            outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
+        };
+        let [input, mut output] = recording.wrong_readings();
+        output.retain(|sample| !is_outlier(*sample));
+        let of = |found: Vec<usize>, quantity: &Quantity| {
+            found.first().map(|first| Advice::Spikes {
+                series: quantity.name.clone(),
+                samples: found.len(),
+                first: first + 1,
+                place: recording.place(*first),
+            })
+        };
+        let both = [
+            of(input, &recording.input_quantity),
+            of(output, &recording.output_quantity),
+        ];
+        both.into_iter().flatten()
+    })
 }
 
 /// So many times more reversals than real ones are noise, from this number of them on.

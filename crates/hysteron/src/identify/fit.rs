@@ -400,9 +400,9 @@ impl<'a> Fit<'a> {
         })
     }
 
-    /// The model of recordings whose inputs act at once, but for the repeats. A ring that nobody asked
-    /// for is taken where the whole model is better with it than without it: few paths that are left
-    /// out can be predicted better by a ring than by operators that are not determined.
+    /// The model of recordings whose inputs act at once, but for the repeats. A ring that nobody
+    /// asked for is taken where the whole model is better with it than without it: few paths that
+    /// are left out can be predicted better by a ring than by operators that are not determined.
     fn acting(&self, recordings: &[Recording]) -> Result<Model> {
         let found = self.staged(recordings, true)?;
         let rings = found

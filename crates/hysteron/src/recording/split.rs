@@ -247,8 +247,8 @@ impl Recording {
         })
     }
 
-    /// As [`Recording::split`] with [`HoldOut::Branches`], but the last branches are held out. The rest
-    /// is the recording's beginning.
+    /// As [`Recording::split`] with [`HoldOut::Branches`], but the last branches are held out. The
+    /// rest is the recording's beginning.
     ///
     /// # Errors
     /// As [`Recording::split`].

@@ -58,8 +58,8 @@ pub enum Cause {
         /// Their number.
         points: usize,
     },
-    /// What comes late was found where the input had one speed, so that a lag could not be told from a
-    /// wider loop.
+    /// What comes late was found where the input had one speed, so that a lag could not be told
+    /// from a wider loop.
     OneSpeed {
         /// The speed, per second.
         speed: f64,
@@ -92,9 +92,9 @@ const NOISY: f64 = 0.5;
 /// Fewer inputs outside the plane are the noise at its ends.
 const SEEN: f64 = 0.01;
 /// With fewer branches than this, one that is left out is often the only one of its kind, and its
-/// error and band do not hold for another recording (docs/measured/coverage.md). Where many repeat few,
-/// what is left out is a copy of what is not: models of one or two loops in turn erred 0.1 to 0.6 %
-/// there, and 1.6 to 3.3 % on other paths.
+/// error and band do not hold for another recording (docs/measured/coverage.md). Where many repeat
+/// few, what is left out is a copy of what is not: models of one or two loops in turn erred 0.1 to
+/// 0.6 % there, and 1.6 to 3.3 % on other paths.
 const FEW: usize = 8;
 
 /// With thirty points, the error on another recording was five times that on what was left out, which

@@ -145,9 +145,9 @@ impl Verdict {
         Self::of_evaluation(model, &looked_at, &evaluation)
     }
 
-    /// The verdict on a model that was fitted to `recordings` while `what` was held out, if anything
-    /// was. Where other recordings are among it, these tell, and the rivals are those fitted to
-    /// `recordings` ([`crate::held_out`]). Else as [`Verdict::of_fit`].
+    /// The verdict on a model that was fitted to `recordings` while `what` was held out, if
+    /// anything was. Where other recordings are among it, these tell, and the rivals are those
+    /// fitted to `recordings` ([`crate::held_out`]). Else as [`Verdict::of_fit`].
     ///
     /// # Errors
     /// As [`crate::evaluate`].

@@ -10,8 +10,8 @@ const BRANCHES: usize = 4;
 /// The faster tenth of the branches is less than this many times as fast as the slower one.
 const ONE: f64 = 1.5;
 
-/// The speed of the input along a branch in the middle, per second, if all are about as fast; `None`
-/// without time, and where the input jumps.
+/// The speed of the input along a branch in the middle, per second, if all are about as fast;
+/// `None` without time, and where the input jumps.
 pub(super) fn one_speed(recordings: &[Recording]) -> Option<f64> {
     let mut speeds = Vec::new();
     for recording in recordings {

@@ -113,8 +113,8 @@ impl Verdict {
                  that were not recorded it is a guess"
             ),
             Cause::OneSpeed { speed } => format!(
-                "all was recorded at one speed ({} per second), so what comes late is not told from a \
-                 wider loop: at other speeds it is a guess",
+                "all was recorded at one speed ({} per second), so what comes late is not told \
+                 from a wider loop: at other speeds it is a guess",
                 self.input.text(*speed)
             ),
             Cause::Elsewhere { coverage, sessions } => format!(
@@ -235,8 +235,8 @@ impl Verdict {
                     let speed = self.input.text(speed);
                     format!("; so may another speed, as all of this one is at {speed} per second")
                 });
-                let words = "evaluate it on another recording: the same actuator on another day may \
-                             differ";
+                let words = "evaluate it on another recording: the same actuator on another day \
+                             may differ";
                 Remedy::new(format!("{words}{}", speed.unwrap_or_default()), [])
             }
             _ if is_good => Remedy::new("use it: invert, control, export", []),
@@ -254,8 +254,8 @@ impl Verdict {
                     [],
                 ),
                 PartKind::Late if part.size < 0.0 => Remedy::new(
-                    "if the sensor of the input is slow, undo it with {}; else look whether input and \
-                     output are exchanged, and whether their rows belong together",
+                    "if the sensor of the input is slow, undo it with {}; else look whether input \
+                     and output are exchanged, and whether their rows belong together",
                     [Setting::word("sensor-lag", "auto")],
                 ),
                 PartKind::Late if self.has_time => Remedy::new(

@@ -220,9 +220,9 @@ fn what_cannot_be_held_out_is_refused() {
     assert!(fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).is_ok());
 }
 
-/// What comes late is found although a share of the branches is held out: these are the last ones. Of
-/// an input that dies down they would be the easy ones, so there they are spread, and it is said that
-/// nothing was looked for.
+/// What comes late is found although a share of the branches is held out: these are the last ones.
+/// Of an input that dies down they would be the easy ones, so there they are spread, and it is said
+/// that nothing was looked for.
 #[test]
 fn a_dead_time_is_found_beside_branches_that_are_held_out() {
     let plane = Plane::new(0.0, 100.0, 15).unwrap();

@@ -272,7 +272,8 @@ fn under_load(stress: f64) -> Recording {
     recording
 }
 
-/// Weights that are straight in the load, and an axis that stays where it is: nothing has to be moved.
+/// Weights that are straight in the load, and an axis that stays where it is: nothing has to be
+/// moved.
 #[test]
 fn weights_that_follow_the_load_alone_are_found() {
     let plane = Plane::new(0.0, 10.0, 12).unwrap();

@@ -444,8 +444,8 @@ fn few_set_points_are_no_promise() {
     }
 }
 
-/// One or two loops over and over: what a fit leaves out is a copy of what it keeps. As many branches
-/// that differ are a test.
+/// One or two loops over and over: what a fit leaves out is a copy of what it keeps. As many
+/// branches that differ are a test.
 #[test]
 fn copies_of_few_branches_are_no_promise() {
     let mut rng = ChaCha8Rng::seed_from_u64(7);

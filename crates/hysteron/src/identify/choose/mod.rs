@@ -62,9 +62,10 @@ pub(super) fn tested(
 /// A stage that nobody asked for has to be better by this share.
 const WORTH: f64 = 0.1;
 
-/// Whether a model with a stage predicts what was left out clearly better than the one without it, and
-/// follows what was fitted clearly better, each with the levels and the other stages that it chose. A
-/// dead time or a ring adds no weights to follow it with, and few branches that are left out say little.
+/// Whether a model with a stage predicts what was left out clearly better than the one without it,
+/// and follows what was fitted clearly better, each with the levels and the other stages that it
+/// chose. A dead time or a ring adds no weights to follow it with, and few branches that are left
+/// out say little.
 pub(super) fn is_worth(with: &Model, without: &Model) -> bool {
     let (Some(with), Some(without)) = (&with.fit, &without.fit) else {
         return false;

@@ -76,8 +76,8 @@ impl Candidate {
     }
 }
 
-/// Whether an error is smaller than another one by a share of what is beyond the noise, and by a small
-/// share of the whole.
+/// Whether an error is smaller than another one by a share of what is beyond the noise, and by a
+/// small share of the whole.
 pub(super) fn is_better(error: f64, other: f64, worth: f64, noise: f64) -> bool {
     let share = |less: f64| 1.0 - (1.0 - less) * (1.0 - less);
     let gained = other * other - error * error;

@@ -162,8 +162,8 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
         .any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
 }
 
-/// A number with a decimal comma, or with thousands set apart, rewritten as Rust reads it. `None` for
-/// any other cell.
+/// A number with a decimal comma, or with thousands set apart, rewritten as Rust reads it. `None`
+/// for any other cell.
 pub(super) fn rewritten(cell: &[u8], decimal_comma: bool) -> Option<Vec<u8>> {
     if !decimal_comma {
         return cell.contains(&b'.').then(|| in_one(cell, '.')).flatten();
@@ -177,8 +177,8 @@ pub(super) fn rewritten(cell: &[u8], decimal_comma: bool) -> Option<Vec<u8>> {
     }
 }
 
-/// A number whose thousands are set apart, as in `1.234,5`, `1'234,5` and `1,234.5`, in one. It needs
-/// decimals: `1.234` may be a small number.
+/// A number whose thousands are set apart, as in `1.234,5`, `1'234,5` and `1,234.5`, in one. It
+/// needs decimals: `1.234` may be a small number.
 fn in_one(cell: &[u8], decimal: char) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(cell).ok()?.trim();
     let (whole, decimals) = text.split_once(decimal)?;
