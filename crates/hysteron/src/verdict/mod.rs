@@ -1,14 +1,14 @@
 //! Whether a model is good enough, for what, why it is not better, and what to do next.
 //!
 //! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for,
-//! and judges it; `worst` is where it errs most;
-//! `tested` reads from the record of a fit what it was tested on; `parts` tells what an error
-//! consists of, `readings` which of it is in readings that are wrong, and `cause` what is behind it;
-//! `speed` tells whether more than one was recorded;
-//! `words` says all of it in sentences. `serial` writes it.
+//! and `judge` finds it. `tested` reads from the record of a fit what it was tested on; `parts` tells
+//! what an error consists of, `readings` which of it is in readings that are wrong, `worst` where it
+//! is largest, `speed` whether all was recorded at one, and `cause` what is behind it. `words` says
+//! all of it in sentences. `serial` writes it.
 
 mod cause;
 mod grade;
+mod judge;
 mod parts;
 mod readings;
 mod serial;

@@ -245,10 +245,18 @@ fn a_dead_time_is_found_beside_branches_that_are_held_out() {
     let fit = Fit::new().levels(12).bootstrap(0);
     let (found, report) = fit_holding_out(&fit, &recorded(false), &HoldOut::Branches(0.2)).unwrap();
     assert_eq!(found.delay().samples(), 3);
-    assert!(!report.without_dynamics);
+    assert!(!report.without_dynamics && report.at_end);
+    let held = recorded(false).split_end(0.2).unwrap().held_out;
+    let count = held.iter().filter(|held| **held).count();
+    assert!(held.ends_with(&vec![true; count]) && report.model.samples == count);
+    assert_eq!(
+        HeldOut::from_record(&found.fit.as_ref().unwrap().other["hold_out"]),
+        Some(report.clone())
+    );
     assert!(report.model.nrmse_percent.unwrap() < 1.0, "{report:?}");
     let (found, report) = fit_holding_out(&fit, &recorded(true), &HoldOut::Branches(0.2)).unwrap();
     assert!(found.delay().is_none() && report.without_dynamics);
+    assert!(!report.at_end);
 }
 
 /// Rows are counted through all recordings: a span over the border takes the end of one and the
