@@ -1436,6 +1436,8 @@ class AdaptedComparison(_Result):
         Samples at the end that the model did not take over, since no later samples confirm them.
     again : Errors
         Of the last weights, over the whole recording.
+    again_late : Compared or None
+        The same over the samples of `late`, beside the fixed model.
     counts : OutcomeCounts
         How often each outcome was.
     drift : Drift
@@ -1450,6 +1452,7 @@ class AdaptedComparison(_Result):
     worse: bool
     probation: int
     again: Errors
+    again_late: Compared | None
     counts: OutcomeCounts
     drift: Drift
     stuck: tuple[Stuck, ...]

@@ -119,6 +119,15 @@ fn drift(adapted: &Adapted) -> String {
 fn worse(adapted: &Adapted) -> String {
     let error = |errors: Errors| adapted.model.output.text(errors.rmse);
     let found = match adapted.late {
+        Some(late) if late.adapting.rmse < late.fixed.rmse => {
+            let again = adapted.again_late.unwrap_or(late);
+            format!(
+                "what it was in the end errs by {} (RMSE) over the last third, the model left alone \
+                 by {}",
+                error(again.adapting),
+                error(again.fixed)
+            )
+        }
         Some(late) => format!(
             "over the last third it erred by {} (RMSE) before it learned, the model left alone by \
              {}",
@@ -144,6 +153,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "stuck": adapted.stuck,
         "probation": adapted.probation,
         "again": adapted.again,
+        "again_late": adapted.again_late,
         "counts": adapted.counts,
         "shares": adapted.shares.iter().copied().collect::<std::collections::BTreeMap<_, _>>(),
         "drift": adapted.drift,

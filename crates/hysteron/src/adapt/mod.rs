@@ -76,11 +76,14 @@ pub struct Adapted {
     pub late: Option<Compared>,
     /// Whether the model that learned is no better than the model left alone: on the last third
     /// its errors, taken before it learned from each sample, are larger than those of the fixed
-    /// model, or as large although it changed. Differences of the size of rounding do not count.
+    /// model, or as large although it changed. Differences of the size of rounding do not count. Or
+    /// the final weights have clearly larger errors there ([`Adapted::again_late`]).
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.
     pub again: Errors,
+    /// The same over the samples of [`Adapted::late`], beside the fixed model.
+    pub again_late: Option<Compared>,
     /// How the model has changed.
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
@@ -108,6 +111,11 @@ impl Compared {
     /// By how much the adapting model has larger errors, as a share of the model's range.
     fn loss(&self, (off, on): (f64, f64)) -> f64 {
         (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
+    }
+
+    /// Whether what learned is clearly the worse one.
+    fn is_harm(&self) -> bool {
+        self.adapting.rmse > HARM * self.fixed.rmse
     }
 }
 
@@ -161,10 +169,33 @@ pub fn adapt(
     if options.learner == Learner::Load {
         return unknown_load::adapt(model, (recordings, &joined), options, progress);
     }
-    if !model.is_plain() && model.load.is_none() {
-        return adapt_within(model, recordings, options, progress);
+    // The operators between the stages of a model learn, and what it gives behind them is judged.
+    if model.is_plain() || model.load.is_some() {
+        return learn(model, recordings, options, progress)?.judged(&joined, options);
     }
+    let seen = recordings.iter().map(|recording| {
+        let seen = model.recording_within(recording)?;
+        Ok(seen.into_owned())
+    });
+    let seen: Vec<Recording> = seen.collect::<Result<_>>()?;
+    let mut learned = learn(&model.within(), &seen, options, progress)?;
+    learned.pass(model, recordings);
+    let mut adapted = learned.judged(&joined, options)?;
+    let mut whole = model.around(adapted.model.operators().clone());
+    whole.fit = adapted.model.fit.take();
+    adapted.model = whole;
+    Ok(adapted)
+}
+
+/// Runs an estimator over recordings, for a model of operators alone or with a load.
+fn learn(
+    model: &Model,
+    recordings: &[Recording],
+    options: &AdaptOptions,
+    progress: Progress<'_>,
+) -> Result<Learned> {
     refuse_unusable(model)?;
+    let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
     let learned_by = options.resolve(model, &joined)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
@@ -210,19 +241,18 @@ pub fn adapt(
         last = Some((adaptive.model()?, adaptive.shares()));
     }
     let (last, shares) = last.ok_or_else(no_samples)?;
-    Learned {
+    Ok(Learned {
+        again: run_from(&last, from_on, recordings)?,
         offline,
         last,
         learned,
         fixed,
-        from_on,
         probation,
         still,
         shares,
         shift: None,
         options: learned_by,
-    }
-    .judged((recordings, &joined), options)
+    })
 }
 
 /// What an estimator made of recordings.
@@ -232,7 +262,8 @@ struct Learned {
     learned: Vec<Learning<f64>>,
     /// The outputs of the model left alone.
     fixed: Vec<f64>,
-    from_on: bool,
+    /// The outputs of the last model, run again from the start.
+    again: Vec<f64>,
     probation: usize,
     /// How many of the last samples have an output that seems to stand still.
     still: usize,
@@ -242,10 +273,25 @@ struct Learned {
 }
 
 impl Learned {
+    /// Lets all outputs pass the stages behind the operators of `model`.
+    fn pass(&mut self, model: &Model, recordings: &[Recording]) {
+        let learned = self.learned.iter().map(|learning| learning.output);
+        let learned: Vec<f64> = learned.collect();
+        for (learning, output) in self
+            .learned
+            .iter_mut()
+            .zip(model.behind_operators(recordings, &learned))
+        {
+            learning.output = output;
+        }
+        self.fixed = model.behind_operators(recordings, &self.fixed);
+        self.again = model.behind_operators(recordings, &self.again);
+    }
+
     /// Compares it with the model left alone. `joined` are the recordings one after the other.
     fn judged(
         self,
-        (recordings, joined): (&[Recording], &Recording),
+        joined: &Recording,
         options: &AdaptOptions,
     ) -> Result<Adapted> {
         let Self {
@@ -253,6 +299,7 @@ impl Learned {
             mut last,
             mut learned,
             fixed,
+            again,
             ..
         } = self;
         let count = joined.len();
@@ -262,12 +309,13 @@ impl Learned {
         }
         let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
         let counts = OutcomeCounts::of(&learned);
-        let compare = |which: &dyn Fn(usize) -> bool| {
+        let beside_fixed = |outputs: &[f64], which: &dyn Fn(usize) -> bool| {
             Some(Compared {
-                adapting: Errors::between(&joined.output, &output_model, which)?,
+                adapting: Errors::between(&joined.output, outputs, which)?,
                 fixed: Errors::between(&joined.output, &fixed, which)?,
             })
         };
+        let compare = |which: &dyn Fn(usize) -> bool| beside_fixed(&output_model, which);
         let whole = compare(&|_| true).ok_or_else(no_samples)?;
         let third = |k: usize| k * count / 3..(k + 1) * count / 3;
         let thirds = (0..3)
@@ -279,8 +327,9 @@ impl Learned {
         let alive = |n: &usize| stuck.iter().all(|stuck| !stuck.samples.contains(n));
         let alive: Vec<usize> = (0..count).filter(alive).collect();
         let last_third = &alive[2 * alive.len() / 3..];
-        let late = compare(&|n| last_third.binary_search(&n).is_ok() && judges(n));
-        let again = run_from(&last, self.from_on, recordings)?;
+        let is_late = |n: usize| last_third.binary_search(&n).is_ok() && judges(n);
+        let late = compare(&is_late);
+        let again_late = beside_fixed(&again, &is_late);
         let again = Errors::between(&joined.output, &again, |_| true).ok_or_else(no_samples)?;
         last.fit = Some(summary(
             &last,
@@ -292,8 +341,11 @@ impl Learned {
         ));
         let drift = Drift::between(&offline, &last, self.shift.as_ref());
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
+        // A load goes on moving: its last shift is not that of the samples before.
+        let stays = self.shift.is_none();
         Ok(Adapted {
-            worse: is_worse(late.as_ref(), changed, offline.output_range()),
+            worse: is_worse(late.as_ref(), changed, offline.output_range())
+                || stays && again_late.is_some_and(|again| again.is_harm()),
             drift,
             stuck,
             model: last,
@@ -305,39 +357,12 @@ impl Learned {
             thirds,
             late,
             again,
+            again_late,
             shares: self.shares,
             shift: self.shift,
             options: self.options,
         })
     }
-}
-
-/// Adapts the operators between the stages of a model. The errors are those of the operators: in
-/// front of the stages behind them.
-fn adapt_within(
-    model: &Model,
-    recordings: &[Recording],
-    options: &AdaptOptions,
-    progress: Progress<'_>,
-) -> Result<Adapted> {
-    let seen = recordings.iter().map(|recording| {
-        let seen = model.recording_within(recording)?;
-        Ok(seen.into_owned())
-    });
-    let seen: Vec<Recording> = seen.collect::<Result<_>>()?;
-    let mut adapted = adapt(&model.within(), &seen, options, progress)?;
-    let mut whole = model.around(adapted.model.operators().clone());
-    whole.fit = adapted.model.fit.take();
-    adapted.model = whole;
-    // With these, measured minus expected is the error of the operators.
-    let all = |recordings: &[Recording]| -> Vec<f64> {
-        recordings.iter().flat_map(|r| &r.output).copied().collect()
-    };
-    let outputs = all(recordings).into_iter().zip(all(&seen));
-    for (expected, (measured, before)) in adapted.output_model.iter_mut().zip(outputs) {
-        *expected += measured - before;
-    }
-    Ok(adapted)
 }
 
 /// How many of `count` samples are at the end and on probation.
@@ -506,6 +531,10 @@ fn described(options: &Adaptation<f64>) -> serde_json::Value {
     object["burst"] = json!(options.burst);
     object
 }
+
+/// The model that learned goes on learning, so a little more than the error of the fixed one is no
+/// harm. A model that is written stays as it is.
+const HARM: f64 = 1.1;
 
 /// Differences below this share are rounding, because two ways to sum have different orders.
 const ROUNDING: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! The method `load` over a recording: an estimate of the shift, sample by sample.
 
 use super::stuck::at_the_end;
-use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation};
+use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation, run_from};
 use crate::error::Result;
 use crate::model::{Model, Surroundings};
 use crate::progress::{Progress, SAMPLES_BETWEEN};
@@ -84,17 +84,18 @@ pub(super) fn adapt(
         load: last.load(),
         from: last.told(),
     };
+    let last = last.model()?;
     Learned {
+        again: run_from(&last, from_on, recordings)?,
         offline,
-        last: last.model()?,
+        last,
         learned,
         fixed,
-        from_on,
         probation,
         still,
         shares: Vec::new(),
         shift: Some(found),
         options: learned_by,
     }
-    .judged((recordings, joined), options)
+    .judged(joined, options)
 }

@@ -378,7 +378,8 @@ impl<'a> Fit<'a> {
     }
 
     /// The model, and the dead time before it, where the whole model is better with it than without
-    /// it on what was left out. A coarse grid takes a narrow loop for a dead time.
+    /// it on what was left out, or is about as good as one with a stage that comes late in its place.
+    /// A coarse grid takes a narrow loop for a dead time.
     fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         let at_once = self.acting(recordings)?;
         // A body and a dead time change places, so what is behind the body tells.
@@ -394,7 +395,14 @@ impl<'a> Fit<'a> {
             return Ok((at_once, delay));
         }
         let late = self.acting(&delay.of_recordings(recordings))?;
-        Ok(match is_worth(&late, &at_once) {
+        // What was taken for a ring or a lag has to be the better one: undoing a dead time does not
+        // multiply noise.
+        let is_timed = |model: &Model| model.without_body().is_timed();
+        let is_late = match is_timed(&at_once) && !is_timed(&late) {
+            true => !is_worth(&at_once, &late),
+            false => is_worth(&late, &at_once),
+        };
+        Ok(match is_late {
             true => (late, delay),
             false => (at_once, Delay::NONE),
         })

@@ -161,4 +161,27 @@ impl Model {
         });
         sums.collect()
     }
+
+    /// What the stages behind the operators make of `outputs` of these, over recordings one after the
+    /// other.
+    pub(crate) fn behind_operators(&self, recordings: &[Recording], outputs: &[f64]) -> Vec<f64> {
+        if self.behind.is_none() {
+            return outputs.to_vec();
+        }
+        let stages = self.stages();
+        let samples = recordings.iter().flat_map(|recording| {
+            let time = recording.time.as_deref();
+            (0..recording.len()).map(move |n| {
+                let dt = time.map(|time| time[n] - time[n.saturating_sub(1)]);
+                (n, dt.unwrap_or_default())
+            })
+        });
+        let mut past = None;
+        let passed = samples.zip(outputs).map(|((n, dt), &output)| {
+            let (y, next) = stages.after(past.filter(|_| n > 0), dt, output);
+            past = Some(next);
+            y
+        });
+        passed.collect()
+    }
 }

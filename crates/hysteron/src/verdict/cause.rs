@@ -2,7 +2,9 @@
 
 use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind, parts_after};
+use super::tested::BEYOND;
 use crate::evaluate::Evaluation;
+use crate::hold_out::HeldOut;
 use crate::identify::kept::DIFFERENT;
 use crate::model::FitSummary;
 use crate::recording::Recording;
@@ -63,6 +65,11 @@ pub enum Cause {
     OneSpeed {
         /// The speed, per second.
         speed: f64,
+    },
+    /// The model errs much more on what it was fitted to than on what was held out.
+    Easier {
+        /// The error on what was fitted, in percent.
+        percent: f64,
     },
     /// Loads that were left out are predicted badly, so others may be as well.
     LoadsLeftOut {
@@ -132,6 +139,7 @@ impl Cause {
             Self::FewBranches { .. } => "few_branches",
             Self::FewPoints { .. } => "few_points",
             Self::OneSpeed { .. } => "one_speed",
+            Self::Easier { .. } => "easier",
             Self::LoadsLeftOut { .. } => "loads_left_out",
             Self::Misfit { .. } => "misfit",
         }
@@ -148,6 +156,7 @@ impl Cause {
             Self::LoadsLeftOut { .. } => 0.82,
             Self::OneSpeed { .. } => 0.81,
             Self::FewBranches { .. } | Self::FewPoints { .. } => 0.8,
+            Self::Easier { .. } => 0.4,
             Self::Outside { share } if *share > SEEN => 0.3,
             Self::Noise { .. } => Self::NOISE,
             Self::Misfit { .. } => Self::MISFIT,
@@ -164,7 +173,16 @@ pub(super) fn of_record(fit: &FitSummary, on_others: bool) -> Vec<Cause> {
     let loads = loads.map(|percent| Cause::LoadsLeftOut { percent });
     let few = branches_of(fit).filter(|_| !on_others);
     let few = few.filter(|(_, different)| *different < FEW);
-    loads.into_iter().chain(few.map(few_branches)).collect()
+    let causes = loads.into_iter().chain(few.map(few_branches));
+    let easier = easier(fit).filter(|_| !on_others);
+    causes.chain(easier).collect()
+}
+
+/// What was held out may be small loops, or a calm end: it is no proof of the rest.
+fn easier(fit: &FitSummary) -> Option<Cause> {
+    let held_out = HeldOut::from_record(fit.other.get("hold_out")?)?;
+    let percent = fit.nrmse_percent;
+    (fit.rmse > BEYOND * held_out.model.rmse).then_some(Cause::Easier { percent })
 }
 
 fn few_branches((branches, different): (usize, usize)) -> Cause {

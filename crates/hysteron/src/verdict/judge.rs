@@ -13,6 +13,12 @@ impl Verdict {
             true => f64::INFINITY,
             false => 0.0,
         });
+        // An easy test is no better than what was fitted.
+        let fitted = self.causes.iter().find_map(|cause| match cause {
+            Cause::Easier { percent } => Some(*percent),
+            _ => None,
+        });
+        let percent = percent.max(fitted.unwrap_or_default());
         // What a few numbers explain is no noise.
         let explained = self
             .causes

@@ -230,7 +230,8 @@ impl Verdict {
         };
         // From another start the model errs by what its fit never saw.
         let rmse = rmse_without(recordings, output, outliers).unwrap_or(errors.rmse);
-        let is_as_fitted = |record: &Self| rmse <= tested::BEYOND * record.rmse;
+        let fitted = model.fit.as_ref().map_or(0.0, |fit| fit.rmse);
+        let is_as_fitted = |record: &Self| rmse <= tested::BEYOND * record.rmse.max(fitted);
         let record = Self::unjudged(model).filter(|_| was_fitted);
         let mut verdict = match record.filter(is_as_fitted) {
             Some(record) => record,

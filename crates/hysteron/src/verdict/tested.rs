@@ -9,7 +9,8 @@ use crate::model::{Criterion, FitSummary};
 const CURVE: &str = "curve";
 
 /// A fit whose error on what it saw is so many times that on what was left out has a stage that was
-/// not there when something was left out.
+/// not there when something was left out. Where a part was held out, that part is easier than the
+/// rest.
 pub(super) const BEYOND: f64 = 1.5;
 
 /// The error on what a fit was tested on, and that of the best rival there.

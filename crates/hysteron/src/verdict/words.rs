@@ -1,5 +1,6 @@
 //! A verdict in sentences.
 
+use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
 use crate::model::band_name;
@@ -14,6 +15,9 @@ fn is_odd(gain: &ErrorPart) -> bool {
 
 /// What helps a model that cannot follow.
 const MORE: &str = "record more reversals inside the range (design makes such an input)";
+/// The same, where what depends on the speed was not seen.
+const FASTER: &str = "record more reversals inside the range (design makes such an input), and some \
+     at another speed";
 
 fn is_few(cause: &Cause) -> bool {
     matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. })
@@ -32,12 +36,25 @@ impl Grade {
     }
 }
 
+/// Of a model whose inverse undoes what comes late, which multiplies the noise of the readings.
+const SMOOTH: &str = "good: its inverse can drive without a sensor, along a smooth path";
+
 impl Verdict {
+    /// The word of the grade, and what the model is good for.
+    #[must_use]
+    pub fn words(&self) -> &'static str {
+        let inverse = self.inverse.and_then(|errors| errors.nrmse_percent);
+        match self.grade {
+            Grade::Good if inverse.is_some_and(|percent| percent > USABLE) => SMOOTH,
+            grade => grade.words(),
+        }
+    }
+
     /// What is to be said, each with its heading: `verdict`, `error`, `inverse`, `why`, `worst` and
     /// `next`, as far as there is something. An option is written by `spelling`.
     pub fn lines(&self, spelling: impl Fn(&Setting) -> String) -> Vec<(&'static str, String)> {
         let mut lines = vec![
-            ("verdict", self.grade.words().to_owned()),
+            ("verdict", self.words().to_owned()),
             ("error", self.error()),
         ];
         if let Some(inverse) = &self.inverse {
@@ -116,6 +133,10 @@ impl Verdict {
                 "all was recorded at one speed ({} per second), so what comes late is not told \
                  from a wider loop: at other speeds it is a guess",
                 self.input.text(*speed)
+            ),
+            Cause::Easier { percent } => format!(
+                "the model errs {percent:.2} % of the range on what it was fitted to: what was held \
+                 out is easier than that"
             ),
             Cause::Elsewhere { coverage, sessions } => format!(
                 "only {coverage:.1} % of the samples are inside the {}: it does not belong to \
@@ -302,7 +323,8 @@ impl Verdict {
                 Remedy::new("record loads between those that there are", [])
             }
             _ => {
-                let words = |more| format!("{MORE}{more}");
+                let record = self.one_speed.map_or(MORE, |_| FASTER);
+                let words = |more| format!("{record}{more}");
                 let [load, time] = [Setting::any("load"), Setting::any("time")];
                 let [creep, thermal] = [Setting::word("creep", "auto"), Setting::on("thermal")];
                 match (self.has_load, self.has_time) {

@@ -4,7 +4,7 @@ use crate::common::shared;
 use hysteron::{
     AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, FirstOrder, Fit, FitOptions,
     Learner, Model, Operator, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start,
-    Step, Turning, Window, adapt, plane_of, prepare,
+    Step, Turning, Window, adapt, forward, plane_of, prepare,
 };
 
 const LEARNERS: [Learner; 4] = [
@@ -507,4 +507,44 @@ fn a_measured_alloy_is_followed_to_another_stress() {
         "{:?}",
         adapted.again
     );
+}
+
+/// A model with a wrong lag gets wrong operators. The errors are those of the whole model, as an
+/// evaluation finds them, and what errs more than the model left alone is called worse.
+#[test]
+fn what_a_wrong_lag_teaches_is_judged_by_the_whole_model() {
+    let plant = wire(1.0, 0).with_after(&[], 1.0).unwrap();
+    let mut recording = recorded(&wire(1.0, 0), Start::Off);
+    let time: Vec<f64> = (0..recording.len()).map(|n| n as f64).collect();
+    recording.time = Some(time.clone());
+    recording.output = forward(&plant, &recording, Start::Off).unwrap().output_model;
+    let last_third = |model: &Model| {
+        let output = forward(model, &recording, Start::Off).unwrap().output_model;
+        let late = 2 * recording.len() / 3;
+        let errors = Errors::between(&recording.output, &output, |n| n >= late).unwrap();
+        errors.rmse
+    };
+    let mut worse = 0;
+    for lag in [1.0, 4.0, 16.0, 40.0] {
+        for learner in LEARNERS.into_iter().chain([Learner::Auto]) {
+            let model = wire(1.3, 1).with_after(&[], lag).unwrap();
+            let options = AdaptOptions {
+                start: Start::Off,
+                ..by(learner)
+            };
+            let adapted = adapt(&model, &recording, &options, Progress::NONE).unwrap();
+            let fixed = forward(&model, &recording, Start::Off).unwrap();
+            let rmse = adapted.whole.fixed.rmse;
+            assert!((rmse / fixed.errors.rmse - 1.0).abs() < 1e-9);
+            let again = forward(&adapted.model, &recording, Start::Off).unwrap();
+            assert!((adapted.again.rmse / again.errors.rmse - 1.0).abs() < 1e-9);
+            worse += usize::from(adapted.worse);
+            // Samples on probation do not count there, so a little is left.
+            assert!(
+                adapted.worse || last_third(&adapted.model) < 1.12 * last_third(&model),
+                "{learner:?} with a lag of {lag}"
+            );
+        }
+    }
+    assert!((1..20).contains(&worse), "{worse}");
 }

@@ -567,3 +567,35 @@ fn a_lag_found_at_one_speed_is_no_promise() {
         );
     }
 }
+
+/// What is held out may be much easier than what is fitted: then what was fitted tells.
+#[test]
+fn an_easy_part_is_no_proof_of_the_rest() {
+    let plant = model(&[0.5; 78]);
+    let disturbed = |size: f64| {
+        move |n: usize, y: f64| match n < 600 {
+            true => y + size * (n as f64 * 0.9).sin().signum(),
+            false => y,
+        }
+    };
+    let end = HoldOut::Branches(0.2);
+    for size in [0.0, 1.0] {
+        let mut recording = recording(&plant, disturbed(size));
+        recording.time = Some((0..recording.len()).map(|n| n as f64).collect());
+        let fit = Fit::new().bootstrap(0).robust(false);
+        let (model, report) = fit_holding_out(&fit, &recording, &end).unwrap();
+        let verdict = Verdict::of_fit(&model, &recording).unwrap();
+        assert_eq!(verdict.basis, Basis::HeldOut, "{verdict}");
+        assert_ne!(verdict.grade, Grade::Untested, "{verdict}");
+        let easier = verdict.causes.iter().find_map(|cause| match cause {
+            Cause::Easier { percent } => Some(*percent),
+            _ => None,
+        });
+        let fitted = model.fit.as_ref().unwrap();
+        let is_easy = fitted.rmse > 1.5 * report.model.rmse;
+        assert_eq!(easier, is_easy.then_some(fitted.nrmse_percent), "{verdict}");
+        if size > 0.0 {
+            assert!(is_easy && verdict.grade != Grade::Good, "{verdict}");
+        }
+    }
+}

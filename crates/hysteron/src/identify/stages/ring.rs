@@ -47,6 +47,11 @@ const CLEAR: f64 = 4.0;
 /// From a damping of `1/√2` on there is no resonance. A lag says the same then.
 const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
+/// A ring of more damping hardly rings: it is a lag of second order, which smooths whatever the model
+/// does wrong. It has to take this share of the error, as a long lag has.
+const DULL: f64 = 0.25;
+const DULL_WORTH: f64 = 0.5;
+
 /// A ring has to die down within this share of the longest recording. One that goes on is not told
 /// apart from an input that does.
 const DECAYS: f64 = 1.0 / 3.0;
@@ -120,7 +125,9 @@ pub(super) fn find(
     let (constants, targets, _) = search.swung(first, None, &still)?;
     let [frequency, damping] = constants;
     let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
+    let is_weak = damping > DULL && report.with > (1.0 - DULL_WORTH) * report.without;
     let is_unclear = damping >= RESONANT
+        || is_weak
         || decay > DECAYS * clock.longest
         || CLEAR * clock.step * frequency > 1.0;
     if !asked && is_unclear {
