@@ -142,6 +142,40 @@ fn few_strokes_of_a_still_plant_do_not_ring() {
     }
 }
 
+/// Gear play and a slide that sticks and slips, ten samples late, at several speeds. A ring that
+/// hardly rings smooths the slips, which no model follows, and comes late as well.
+#[test]
+fn a_dead_time_of_a_plant_that_slips_is_no_ring() {
+    const LATE: usize = 10;
+    for seed in 0..3 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut inputs = vec![20.0_f64];
+        while inputs.len() < 3000 {
+            let from = inputs[inputs.len() - 1];
+            let to = random.random_range(20.0..80.0);
+            let speed = [0.25, 0.6, 1.5][random.random_range(0..3)];
+            let count = ((to - from) / speed).abs().ceil();
+            inputs.extend((1..=count as i32).map(|n| from + (to - from) * f64::from(n) / count));
+        }
+        let (mut gear, mut slide) = (inputs[0], inputs[0]);
+        let mut moved = vec![0.0; LATE];
+        for x in &inputs {
+            gear = gear.clamp(x - 3.0, x + 3.0);
+            if (gear - slide).abs() > 5.76 {
+                slide = gear - f64::copysign(1.2, gear - slide);
+            }
+            moved.push(0.15 * (slide - 20.0));
+        }
+        let noisy = |y: &f64| y + 0.01 * random.random_range(-1.0..1.0);
+        let outputs = moved[..inputs.len()].iter().map(noisy).collect();
+        let mut recording = Recording::new(inputs, outputs).unwrap();
+        recording.time = Some((0..recording.len()).map(|n| 0.5 * n as f64).collect());
+        let found = quick().run(&recording).unwrap();
+        assert_eq!(ring_of(&found), None, "seed {seed}");
+        assert!(found.delay().samples().abs_diff(LATE) <= 1, "seed {seed}");
+    }
+}
+
 #[test]
 fn a_ring_that_is_excited_is_found_and_its_inverse_follows_a_path() {
     let noise = 0.005;
