@@ -1223,12 +1223,16 @@ class SensorLag(_Result):
         Error of the static model before, in the output's unit.
     rmse_after : float or None
         Error with the estimated lag undone, in the output's unit.
+    one_speed : float or None
+        Speed of the input per second, if a lag was estimated where all was recorded at about the
+        same: at other speeds it may be wrong.
     """
 
     undone: float | None
     estimate: float | None
     rmse_before: float | None
     rmse_after: float | None
+    one_speed: float | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -1438,6 +1442,8 @@ class AdaptedComparison(_Result):
         Of the last weights, over the whole recording.
     again_late : Compared or None
         The same over the samples of `late`, beside the fixed model.
+    late_spread : float
+        The standard deviation of the measured output there: what a constant errs.
     counts : OutcomeCounts
         How often each outcome was.
     drift : Drift
@@ -1453,6 +1459,7 @@ class AdaptedComparison(_Result):
     probation: int
     again: Errors
     again_late: Compared | None
+    late_spread: float
     counts: OutcomeCounts
     drift: Drift
     stuck: tuple[Stuck, ...]

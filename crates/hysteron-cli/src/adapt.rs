@@ -123,9 +123,10 @@ fn worse(adapted: &Adapted) -> String {
             let again = adapted.again_late.unwrap_or(late);
             format!(
                 "what it was in the end errs by {} (RMSE) over the last third, the model left alone \
-                 by {}",
+                 by {}, a constant by {}",
                 error(again.adapting),
-                error(again.fixed)
+                error(again.fixed),
+                adapted.model.output.text(adapted.late_spread)
             )
         }
         Some(late) => format!(
@@ -154,6 +155,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "probation": adapted.probation,
         "again": adapted.again,
         "again_late": adapted.again_late,
+        "late_spread": adapted.late_spread,
         "counts": adapted.counts,
         "shares": adapted.shares.iter().copied().collect::<std::collections::BTreeMap<_, _>>(),
         "drift": adapted.drift,

@@ -279,7 +279,7 @@ fn lag_line(lag: &SensorLag, recording: &Recording) -> String {
         Some(tau) => format!("{} s undone", text::number(tau)),
         None => "none undone".into(),
     };
-    match (lag.estimate, lag.rmse_before, lag.rmse_after) {
+    let line = match (lag.estimate, lag.rmse_before, lag.rmse_after) {
         (Some(tau), Some(before), Some(after)) => format!(
             "sensor lag: {undone}; with {} s a static model errs by {} rms, without by {}",
             text::number(tau),
@@ -287,6 +287,14 @@ fn lag_line(lag: &SensorLag, recording: &Recording) -> String {
             recording.output_quantity.text(before)
         ),
         _ => format!("sensor lag: {undone}"),
+    };
+    match (lag.undone, lag.one_speed) {
+        (Some(_), Some(speed)) => format!(
+            "{line}; all was recorded at one speed ({} per second), where a wider loop looks the \
+             same: at other speeds it is a guess",
+            recording.input_quantity.text(speed)
+        ),
+        _ => line,
     }
 }
 

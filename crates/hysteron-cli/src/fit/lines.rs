@@ -40,10 +40,9 @@ pub(super) fn to_text(
     let bare = model.latent() == 0.0;
     lines.extend(model.thermal.as_ref().map(|body| thermal_line(body, bare)));
     lines.extend(latent_line(model));
-    lines.extend(delay_line(model));
     lines.extend(load_line(model));
-    lines.extend(after_line(model, args));
-    lines.extend(ring_line(model, args));
+    lines.extend(model.late_words());
+    lines.extend(missing_lines(model, args));
     lines.extend(curve_line(model, args));
     lines.extend(start_line(fit));
     lines.extend(prior_line(fit));
@@ -180,18 +179,6 @@ fn loads_left_out(model: &Model, unit: &str) -> Option<String> {
     Some(error + &silent)
 }
 
-/// The dead time, where there is one.
-fn delay_line(model: &Model) -> Option<String> {
-    let delay = model.delay();
-    let (samples, seconds) = (delay.samples(), text::number(delay.seconds()));
-    (!delay.is_none()).then(|| {
-        format!(
-            "dead time of {}, {seconds} s",
-            hysteron::counted(samples, "sample")
-        )
-    })
-}
-
 /// The output curve; said where it was asked for.
 fn curve_line(model: &Model, args: &args::Fit) -> Option<String> {
     let constants = model.constants();
@@ -202,50 +189,20 @@ fn curve_line(model: &Model, args: &args::Fit) -> Option<String> {
     }
 }
 
-/// The ring of the output, where there is one.
-fn ring_line(model: &Model, args: &args::Fit) -> Option<String> {
-    let constants = model.constants();
-    let [frequency, damping] = ["ring_frequency", "ring_damping"].map(|name| constants.get(name));
-    let (&[frequency], &[damping]) = (frequency, damping) else {
-        let asked = args.how.stages.dynamics == Dynamics::Ring;
-        return asked.then(|| "no ring: recordings with a load get none".into());
-    };
-    let mut line = format!(
-        "rings at {} Hz, with a damping of {}",
-        text::number(frequency),
-        text::number(damping)
-    );
-    let report = model.fit.as_ref().and_then(|fit| fit.other.get("ring"));
-    let error = |name| report?.get(name)?.as_f64();
-    if let (Some(without), Some(with)) = (error("without"), error("with")) {
-        line += &format!(": parts left out are predicted to {with:.2} % instead of {without:.2} %");
+/// What was asked for behind the operators and was not found.
+fn missing_lines(model: &Model, args: &args::Fit) -> Vec<String> {
+    let stages = &args.how.stages;
+    let lagging = stages.lag != Step::Off || stages.dynamics == Dynamics::Lag;
+    let asks_after = stages.creep != Step::Off || lagging;
+    let mut lines = Vec::new();
+    if asks_after && model.creep().is_empty() && model.lag() == 0.0 {
+        let words = "no creep and no lag: they do not predict parts of the recording left out";
+        lines.push(words.to_owned());
     }
-    Some(line)
-}
-
-/// What happens after the operators; said where it was asked for.
-fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
-    let (creep, lag) = (model.creep(), model.lag());
-    let lagging = args.how.stages.lag != Step::Off || args.how.stages.dynamics == Dynamics::Lag;
-    let asked = args.how.stages.creep != Step::Off || lagging;
-    let mut said = Vec::new();
-    for term in &creep {
-        said.push(format!(
-            "creep of {:.2} % with {} s",
-            100.0 * term.coefficient,
-            text::number(term.tau)
-        ));
+    if stages.dynamics == Dynamics::Ring && model.constants().get("ring_frequency").is_empty() {
+        lines.push("no ring: recordings with a load get none".to_owned());
     }
-    if lag > 0.0 {
-        said.push(format!("lag of {} s", text::number(lag)));
-    }
-    match (said.is_empty(), asked) {
-        (true, false) => None,
-        (true, true) => {
-            Some("no creep and no lag: they do not predict parts of the recording left out".into())
-        }
-        (false, _) => Some(said.join(", ")),
-    }
+    lines
 }
 
 fn prior_line(fit: &FitSummary) -> Option<String> {

@@ -67,6 +67,8 @@ pub struct FitView {
     pub inverse_errors: Option<Errors>,
     /// Whether it is good enough: headings and sentences.
     pub verdict: Vec<(String, String)>,
+    /// What comes late in the model, in words.
+    pub late: Vec<String>,
     /// What there is to know about the fit.
     pub advice: Vec<String>,
     /// Whether the model has an inverse.
@@ -105,6 +107,7 @@ impl Fitted {
             max_abs: fit.map_or(0.0, |fit| fit.max_abs),
             held_out: self.judged.held_out.clone(),
             inverse_errors: self.judged.inverse,
+            late: model.late_words(),
             advice: self.judged.advice.clone(),
             verdict: self.judged.verdict.clone(),
             inverse: model.inverse().is_ok(),

@@ -43,10 +43,11 @@ use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
-use crate::series::Errors;
+use crate::series::{Errors, mean_and_deviation};
 use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde::Serialize;
 use serde_json::json;
+use std::ops::Range;
 
 /// The result of an adaptation.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,6 +85,10 @@ pub struct Adapted {
     pub again: Errors,
     /// The same over the samples of [`Adapted::late`], beside the fixed model.
     pub again_late: Option<Compared>,
+    /// The standard deviation of the measured output there: what a constant errs. A model that errs
+    /// about as much says nothing of an output that no longer follows its input; it is
+    /// [worse](Adapted::worse), too.
+    pub late_spread: f64,
     /// How the model has changed.
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
@@ -113,9 +118,9 @@ impl Compared {
         (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
     }
 
-    /// Whether what learned is clearly the worse one.
-    fn is_harm(&self) -> bool {
-        self.adapting.rmse > HARM * self.fixed.rmse
+    /// Whether what learned is clearly the worse one, or says nothing of outputs of that `spread`.
+    fn is_harm(&self, spread: f64) -> bool {
+        self.adapting.rmse > HARM * self.fixed.rmse || self.adapting.rmse > NOTHING * spread
     }
 }
 
@@ -209,7 +214,7 @@ fn learn(
     // The last samples, which are not to be learned from.
     let unsure = probation.max(still);
     let mut learned = Vec::with_capacity(count);
-    let mut last = None;
+    let (mut last, mut all_held) = (None, Vec::new());
     for recording in recordings {
         match (from_on, learned.is_empty()) {
             (true, _) => adaptive.saturate()?,
@@ -219,21 +224,30 @@ fn learn(
         // Those up to the last samples, and these.
         let sure = (count - unsure).saturating_sub(learned.len());
         let sure = sure.min(recording.len());
+        let first = learned.len();
+        let held = match learned_by.watches() {
+            true => stuck::held_outputs(recording, &fixed[first..first + recording.len()]),
+            false => Vec::new(),
+        };
+        all_held.extend(held.iter().map(|run| run.start + first..run.end + first));
         for part in [0..sure, sure..recording.len()] {
             let before = learned.len();
             if last.is_none() && before + unsure >= count {
                 adaptive.refit()?;
                 last = Some((adaptive.model()?, adaptive.shares()));
             }
+            let length = part.len() as f64;
             let told = |what: &'static str, share: f64| {
-                let done = before as f64 + share * part.len() as f64;
+                let done = before as f64 + share * length;
                 progress.tell(what, done / count as f64)
             };
-            let (input, output) = (
-                &recording.input[part.clone()],
-                &recording.output[part.clone()],
-            );
-            learned.extend(adaptive.run(input, output, Progress::new(&told))?);
+            // Nothing is learned from an output that was held. A learner alone sees it too late.
+            for (part, is_held) in in_turn(part, &held) {
+                adaptive.freeze(is_held);
+                let (input, output) = (&recording.input[part.clone()], &recording.output[part]);
+                learned.extend(adaptive.run(input, output, Progress::new(&told))?);
+            }
+            adaptive.freeze(false);
         }
     }
     // One that found a channel still has undone what it learned there, the samples before too.
@@ -249,6 +263,7 @@ fn learn(
         fixed,
         probation,
         still,
+        held: all_held,
         shares,
         shift: None,
         options: learned_by,
@@ -267,6 +282,8 @@ struct Learned {
     probation: usize,
     /// How many of the last samples have an output that seems to stand still.
     still: usize,
+    /// The samples over which the output was held.
+    held: Vec<Range<usize>>,
     shares: Vec<(&'static str, f64)>,
     shift: Option<ShiftFound>,
     options: EstimatorOptions,
@@ -289,11 +306,7 @@ impl Learned {
     }
 
     /// Compares it with the model left alone. `joined` are the recordings one after the other.
-    fn judged(
-        self,
-        joined: &Recording,
-        options: &AdaptOptions,
-    ) -> Result<Adapted> {
+    fn judged(self, joined: &Recording, options: &AdaptOptions) -> Result<Adapted> {
         let Self {
             offline,
             mut last,
@@ -306,6 +319,12 @@ impl Learned {
         let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
         for learning in &mut learned[count - self.still..] {
             learning.outcome = Outcome::OutputStuck;
+        }
+        let outcomes = learned.iter().map(|learning| learning.outcome);
+        let outcomes: Vec<Outcome> = outcomes.collect();
+        let stuck = Stuck::all(&outcomes, joined, &fixed, self.still, &self.held);
+        for n in self.held.iter().cloned().flatten() {
+            learned[n].outcome = Outcome::OutputStuck;
         }
         let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
         let counts = OutcomeCounts::of(&learned);
@@ -323,13 +342,14 @@ impl Learned {
             .collect::<Option<_>>()
             .unwrap_or_default();
         let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
-        let stuck = Stuck::all(&outcomes, joined, &fixed, self.still);
         let alive = |n: &usize| stuck.iter().all(|stuck| !stuck.samples.contains(n));
         let alive: Vec<usize> = (0..count).filter(alive).collect();
         let last_third = &alive[2 * alive.len() / 3..];
         let is_late = |n: usize| last_third.binary_search(&n).is_ok() && judges(n);
         let late = compare(&is_late);
         let again_late = beside_fixed(&again, &is_late);
+        let late_outputs = (0..count).filter(|n| is_late(*n)).map(|n| joined.output[n]);
+        let (_, late_spread) = mean_and_deviation(&late_outputs.collect::<Vec<_>>());
         let again = Errors::between(&joined.output, &again, |_| true).ok_or_else(no_samples)?;
         last.fit = Some(summary(
             &last,
@@ -345,7 +365,7 @@ impl Learned {
         let stays = self.shift.is_none();
         Ok(Adapted {
             worse: is_worse(late.as_ref(), changed, offline.output_range())
-                || stays && again_late.is_some_and(|again| again.is_harm()),
+                || stays && again_late.is_some_and(|again| again.is_harm(late_spread)),
             drift,
             stuck,
             model: last,
@@ -358,11 +378,28 @@ impl Learned {
             late,
             again,
             again_late,
+            late_spread,
             shares: self.shares,
             shift: self.shift,
             options: self.options,
         })
     }
+}
+
+/// The samples of a part one stretch after the other, and whether each is among the held ones.
+fn in_turn(part: Range<usize>, held: &[Range<usize>]) -> Vec<(Range<usize>, bool)> {
+    let mut stretches = Vec::new();
+    let mut from = part.start;
+    for run in held {
+        let (start, end) = (run.start.max(from), run.end.min(part.end));
+        if start < end {
+            stretches.extend([(from..start, false), (start..end, true)]);
+            from = end;
+        }
+    }
+    stretches.push((from..part.end, false));
+    stretches.retain(|(stretch, _)| !stretch.is_empty());
+    stretches
 }
 
 /// How many of `count` samples are at the end and on probation.
@@ -535,6 +572,9 @@ fn described(options: &Adaptation<f64>) -> serde_json::Value {
 /// The model that learned goes on learning, so a little more than the error of the fixed one is no
 /// harm. A model that is written stays as it is.
 const HARM: f64 = 1.1;
+
+/// From this share of a constant's error on, a model says nothing of the output.
+const NOTHING: f64 = 0.9;
 
 /// Differences below this share are rounding, because two ways to sum have different orders.
 const ROUNDING: f64 = 1e-9;

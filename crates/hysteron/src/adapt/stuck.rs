@@ -2,7 +2,8 @@
 
 use crate::model::Model;
 use crate::recording::Recording;
-use crate::series::frozen::{are_apart, frozen};
+use crate::series::frozen::{SHORTEST, are_apart, frozen};
+use crate::series::lost::held;
 use hysteron_core::{Channel, Outcome, Reading, Watch};
 use serde::{Serialize, Serializer};
 use std::ops::Range;
@@ -32,13 +33,14 @@ fn word<S: Serializer>(channel: &Channel, serializer: S) -> Result<S::Ok, S::Err
 }
 
 impl Stuck {
-    /// The stretches that `outcomes` tell. `fixed` is the output of the model left alone, `tail`
-    /// what [`at_the_end`] found.
+    /// The stretches that `outcomes` tell, and where the output was `held`. `fixed` is the output of
+    /// the model left alone, `tail` what [`at_the_end`] found.
     pub(super) fn all(
         outcomes: &[Outcome],
         recording: &Recording,
         fixed: &[f64],
         tail: usize,
+        held: &[Range<usize>],
     ) -> Vec<Self> {
         let mut found: Vec<Self> = Vec::new();
         let mut goes_on = false;
@@ -71,6 +73,12 @@ impl Stuck {
             }
             goes_on = true;
         }
+        for samples in held.iter().cloned() {
+            if found.iter().all(|one| are_apart(&one.samples, &samples)) {
+                let channel = Channel::Output;
+                found.push(Self { channel, samples });
+            }
+        }
         // An input that is frozen to the last digit is one at rest to a learner.
         for samples in frozen(&recording.input, &recording.output) {
             if found.iter().all(|one| are_apart(&one.samples, &samples)) {
@@ -98,6 +106,21 @@ fn began(still: &[f64], moving: &[f64], seen: usize) -> usize {
     let like = |y: &f64| (low - margin..=high + margin).contains(y);
     let before = still[..first].iter().rev().take_while(|y| like(y)).count();
     first - before
+}
+
+/// The stretches over which the output was held while the model left alone moved to `fixed`, or was
+/// still while the input moved far, and came back; ascending, apart from each other.
+pub(super) fn held_outputs(recording: &Recording, fixed: &[f64]) -> Vec<Range<usize>> {
+    let mut found = frozen(&recording.output, &recording.input);
+    for run in held(&recording.output, Some(fixed)) {
+        if run.len() >= SHORTEST && found.iter().all(|one| are_apart(one, &run)) {
+            found.push(run);
+        }
+    }
+    // One that lasts to the end is seen by what learns, which then goes back to before it.
+    found.retain(|run| run.end < recording.len());
+    found.sort_by_key(|run| run.start);
+    found
 }
 
 /// How many samples at the end of the recordings have an output that seems to stand still, though a

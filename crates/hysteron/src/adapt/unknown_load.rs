@@ -93,6 +93,7 @@ pub(super) fn adapt(
         fixed,
         probation,
         still,
+        held: Vec::new(),
         shares: Vec::new(),
         shift: Some(found),
         options: learned_by,

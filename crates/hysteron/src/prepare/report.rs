@@ -101,6 +101,9 @@ pub struct SensorLag {
     pub rmse_before: Option<f64>,
     /// RMSE of the static model with the estimated lag undone, in the output's unit.
     pub rmse_after: Option<f64>,
+    /// The speed of the input per second, if a lag was estimated where all was recorded at about the
+    /// same. A lag and a wider loop are then alike, so at other speeds it may be wrong.
+    pub one_speed: Option<f64>,
 }
 
 /// The dead band for reversals of the input.

@@ -3,12 +3,13 @@
 //! This file defines [`Recording`] and the [`Quantity`] of each series. `gaps` finds gaps in the
 //! time. `split` parts a recording into what is fitted and what is held out. `joined` puts several
 //! one after the other, to be shown. `positions` keeps where rows stand in a file, and `rows` names
-//! them. `units` knows what units measure.
+//! them. `speed` tells whether all was recorded at one. `units` knows what units measure.
 
 mod gaps;
 mod joined;
 mod positions;
 mod rows;
+mod speed;
 mod split;
 mod units;
 
@@ -21,6 +22,7 @@ pub(crate) use positions::Positions;
 #[cfg(feature = "data")]
 pub(crate) use positions::RUN;
 pub use rows::Rows;
+pub(crate) use speed::one_speed;
 pub use split::{HoldOut, Split};
 pub(crate) use split::{split_each, split_ends};
 pub(crate) use units::Measures;

@@ -5,7 +5,7 @@ use crate::series::spread::{range, usual_span};
 use std::ops::Range;
 
 /// Fewer equal readings in a row are not told from a slow signal.
-const SHORTEST: usize = 20;
+pub(crate) const SHORTEST: usize = 20;
 /// The other series rises and falls by at least this share of its usual range meanwhile. No material
 /// with any response is still over such a way. One way alone proves nothing: a wire without a drive
 /// cools, and its output moves all the way back.

@@ -3,7 +3,7 @@
 //! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for,
 //! and `judge` finds it. `tested` reads from the record of a fit what it was tested on; `parts` tells
 //! what an error consists of, `readings` which of it is in readings that are wrong, `worst` where it
-//! is largest, `speed` whether all was recorded at one, and `cause` what is behind it. `words` says
+//! is largest, and `cause` what is behind it. `words` says
 //! all of it in sentences. `serial` writes it.
 
 mod cause;
@@ -12,7 +12,6 @@ mod judge;
 mod parts;
 mod readings;
 mod serial;
-mod speed;
 mod tested;
 mod words;
 mod worst;
@@ -27,7 +26,7 @@ use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::{Forward, forward};
 use crate::hold_out::held_out;
 use crate::model::{Model, Start};
-use crate::recording::{HoldOut, Quantity, Recording, no_recordings};
+use crate::recording::{HoldOut, Quantity, Recording, no_recordings, one_speed};
 use crate::rivals::{Rival, RivalKind, SMALL};
 use crate::series::Errors;
 use crate::series::coarse::hides_noise;
@@ -256,7 +255,7 @@ impl Verdict {
             },
         };
         verdict.noise = noise_of(recordings, output);
-        verdict.one_speed = speed::one_speed(recordings);
+        verdict.one_speed = one_speed(recordings);
         verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
         verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());
         let percent = verdict.percent.unwrap_or(f64::INFINITY);

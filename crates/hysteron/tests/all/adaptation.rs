@@ -517,7 +517,9 @@ fn what_a_wrong_lag_teaches_is_judged_by_the_whole_model() {
     let mut recording = recorded(&wire(1.0, 0), Start::Off);
     let time: Vec<f64> = (0..recording.len()).map(|n| n as f64).collect();
     recording.time = Some(time.clone());
-    recording.output = forward(&plant, &recording, Start::Off).unwrap().output_model;
+    recording.output = forward(&plant, &recording, Start::Off)
+        .unwrap()
+        .output_model;
     let last_third = |model: &Model| {
         let output = forward(model, &recording, Start::Off).unwrap().output_model;
         let late = 2 * recording.len() / 3;

@@ -3,8 +3,8 @@
 
 use crate::common::shared;
 use hysteron::{
-    AdaptOptions, Channel, Columns, Fit, FitOptions, Learner, Model, Operator, Plane, Progress,
-    Recording, Sign, adapt,
+    AdaptOptions, Channel, Columns, Errors, Fit, FitOptions, Learner, Model, Operator, Plane,
+    Progress, Recording, Sign, adapt,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -335,4 +335,58 @@ fn open_recordings_are_not_frozen() {
             );
         }
     }
+}
+
+/// A logger that goes on with the last reading for a while, and comes back: too short for a learner
+/// to see it in time. Nothing is learned there, and the rows are named.
+#[test]
+fn an_output_that_is_held_for_a_while_teaches_nothing() {
+    let mut named = 0;
+    for seed in 0..24 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = actuator(&mut rng, 10.0);
+        let noise = if seed % 2 == 0 { 0.01 } else { 0.0 };
+        let clean = recorded(&mut rng, &model, noise);
+        let start = rng.random_range(600..2500);
+        let held = start..start + rng.random_range(20..200);
+        let mut recording = clean.clone();
+        recording.output[held.clone()].fill(clean.output[held.start]);
+        let expected = &model.simulate(&clean.input).unwrap()[held.clone()];
+        let (low, high) = expected
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| {
+                (l.min(*y), h.max(*y))
+            });
+        for learner in [
+            Learner::Auto,
+            Learner::Refit,
+            Learner::LeastSquares,
+            Learner::Drift,
+        ] {
+            let run = |on| adapt(&model, on, &by(learner), Progress::NONE).unwrap();
+            let (taught, told) = (run(&clean), run(&recording));
+            let error = |model: &Model| {
+                let output = model.simulate(&clean.input).unwrap();
+                let late = |n: usize| n >= 2000;
+                Errors::between(&clean.output, &output, late).unwrap().rmse
+            };
+            // A hold may take most of a loop from what a learner sees: 1 % of the plant's stroke.
+            let (with, without) = (error(&told.model), error(&taught.model));
+            assert!(
+                told.worse || with < without + 0.12,
+                "{seed}, {learner:?}: {with} beside {without}"
+            );
+            // The output has left the value by then, by more than a loop that is 1.2 times as high.
+            if high - low > 1.0 {
+                let at = |n: usize, m: usize| n.abs_diff(m) <= 4;
+                let is_told = told.stuck.iter().any(|stuck| {
+                    let samples = &stuck.samples;
+                    at(samples.start, held.start) && at(samples.end, held.end)
+                });
+                assert!(is_told, "{seed}, {learner:?}: {held:?}, {:?}", told.stuck);
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 20, "{named}");
 }

@@ -12,7 +12,7 @@ const ONE: f64 = 1.5;
 
 /// The speed of the input along a branch in the middle, per second, if all are about as fast;
 /// `None` without time, and where the input jumps.
-pub(super) fn one_speed(recordings: &[Recording]) -> Option<f64> {
+pub(crate) fn one_speed(recordings: &[Recording]) -> Option<f64> {
     let mut speeds = Vec::new();
     for recording in recordings {
         let time = recording.time.as_ref()?;
