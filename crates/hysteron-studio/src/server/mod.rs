@@ -112,6 +112,9 @@ impl Server {
         });
         let kept = self.kept.map(|kept| Arc::new(Mutex::new(kept)));
         if let Some(kept) = &kept {
+            // With the files that were opened before it serves.
+            let saved = shared.save(&mut kept.lock().unwrap_or_else(PoisonError::into_inner));
+            saved.map_err(std::io::Error::other)?;
             runtime.spawn(keep(shared.clone(), kept.clone()));
         }
         let served = runtime.block_on(async move {

@@ -185,9 +185,15 @@ impl SavedFit {
     }
 }
 
-/// Whether bytes begin as a session file does.
+/// Whether bytes begin as a session file does, with blanks or without.
 pub(super) fn is_session(bytes: &[u8]) -> bool {
-    bytes.starts_with(format!("{{\"format\":\"{FORMAT}\"").as_bytes())
+    let mut head = bytes
+        .iter()
+        .copied()
+        .filter(|byte| !byte.is_ascii_whitespace());
+    format!("{{\"format\":\"{FORMAT}\"")
+        .bytes()
+        .all(|byte| head.next() == Some(byte))
 }
 
 impl Session {

@@ -147,6 +147,19 @@ impl Session {
         fit.ok_or_else(|| Fault::gone("fit", id))
     }
 
+    /// A fit all of whose files are open, so that it can be made again.
+    pub(super) fn fitted_to_open(&self, id: Id) -> Result<&Fitted, Fault> {
+        let fit = self.fitted(id)?;
+        for file in fit.files.iter().chain(&fit.validated) {
+            let closed = || {
+                let remedy = "open the file again and fit anew";
+                Fault::missing("a file of this fit was closed", remedy)
+            };
+            self.file(*file).map_err(|_| closed())?;
+        }
+        Ok(fit)
+    }
+
     /// What fits gave on a file that has changed is to be computed again.
     pub(super) fn forget_courses(&mut self, file: Id) {
         for fit in &mut self.fits {

@@ -143,17 +143,17 @@ impl Session {
             Take::Command { fit } => text(
                 "fit.sh",
                 "text/plain",
-                commands::shell(self, self.fitted(fit)?),
+                commands::shell(self, self.fitted_to_open(fit)?),
             ),
             Take::Python { fit } => text(
                 "fit.py",
                 "text/plain",
-                commands::python(self, self.fitted(fit)?),
+                commands::python(self, self.fitted_to_open(fit)?),
             ),
             Take::Rust { fit } => text(
                 "fit.rs",
                 "text/plain",
-                commands::rust(self, self.fitted(fit)?),
+                commands::rust(self, self.fitted_to_open(fit)?),
             ),
             Take::Session => Download {
                 name: "studio.session.json".into(),

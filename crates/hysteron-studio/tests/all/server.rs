@@ -352,6 +352,27 @@ fn a_session_file_has_one_studio_and_is_not_replaced_when_another_changed_it() {
     bound().keep(&path).unwrap();
 }
 
+/// What was opened before it serves is in the session at once, or the studio does not begin.
+#[test]
+fn files_that_were_opened_first_are_kept_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, run] = ["s.json", "run.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&run, "time,a,b\n0,1,2\n1,2,3\n2,1,2\n").unwrap();
+    let mut studio = hysteron_studio::Server::bind(0, 1 << 24).unwrap();
+    studio.keep(&path).unwrap();
+    studio.open(&run).unwrap();
+    let (stop, stopped) = std::sync::mpsc::channel();
+    let served = std::thread::spawn(move || studio.run(stopped));
+    let seen = || std::fs::read_to_string(&path).is_ok_and(|text| text.contains("run.csv"));
+    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(20);
+    while !seen() {
+        assert!(std::time::Instant::now() < deadline, "not saved");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    drop(stop);
+    served.join().unwrap().unwrap();
+}
+
 /// A device may have no end, or no room.
 #[cfg(target_os = "linux")]
 #[test]

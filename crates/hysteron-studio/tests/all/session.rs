@@ -470,3 +470,26 @@ proptest! {
         prop_assert!(session.jobs().is_empty());
     }
 }
+
+/// A command without one of the files that were fitted would be another fit, or none.
+#[test]
+fn a_fit_of_a_closed_file_is_not_taken_home_as_a_command() {
+    let mut session = Session::new(1 << 28);
+    let file = session.open("run.csv", table().into()).unwrap();
+    let options = json!({"levels": "5", "bootstrap": "0"});
+    let id = fit(&mut session, json!({"request": "fit", "options": options}));
+    let take = |what: &str| json!({"request": "take", "what": what, "fit": id});
+    for what in ["command", "python", "rust"] {
+        assert!(ask(&mut session, take(what)).is_ok(), "{what}");
+    }
+    value(&mut session, json!({"request": "close", "file": file}));
+    for what in ["command", "python", "rust"] {
+        let fault = ask(&mut session, take(what)).unwrap_err();
+        assert!(fault.problem.contains("was closed"), "{what}: {fault}");
+    }
+    // With blanks or without: the file that was saved is one of sessions.
+    let saved = taken(&mut session, json!({"what": "session"}));
+    let saved: Value = serde_json::from_slice(&saved).unwrap();
+    let pretty = serde_json::to_vec_pretty(&saved).unwrap();
+    Session::new(1 << 28).open("s.json", pretty).unwrap();
+}

@@ -194,6 +194,7 @@ impl Course {
         Series {
             moves: self.numbers() && self.max > self.min,
             rises: 20 * self.falling <= steps,
+            falls: 20 * self.rising <= steps,
             rises_evenly: most(self.rising, steps) && 10 * self.even >= 8 * steps.saturating_sub(1),
             stamps: self.missing > 0 && self.count == 0 && most(self.stamps, self.missing),
             changes: self.max - self.min > CHANGES * self.min.abs().max(self.max.abs()),

@@ -1,6 +1,6 @@
 //! The roles of columns over random tables: right, or in doubt, and never wrong.
 
-use hysteron::{Roles, TableReader, preview_table};
+use hysteron::{Columns, Recording, Repair, Roles, TableReader, preview_table};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -254,6 +254,46 @@ fn rising_first(header: &str) -> [String; 4] {
         format!("{n},{},{},{}\n", x.sin(), x.cos(), (x / 2.0).cos())
     });
     told(&format!("{header}\n{}", rows.collect::<String>()))
+}
+
+/// A clock that falls is a history backwards: it is taken for the time, and reading it says so. One
+/// that goes both ways is told.
+#[test]
+fn a_clock_that_falls_is_not_passed_over() {
+    let table = |time: &dyn Fn(i32) -> i32| {
+        let rows = (0..200).map(|n| {
+            let x = f64::from(n) * 0.1;
+            format!("{},{},{}\n", time(n), x.sin(), x.cos())
+        });
+        format!(
+            "time,temperature_C,displacement_mm\n{}",
+            rows.collect::<String>()
+        )
+    };
+    let falls = table(&|n| 200 - n);
+    assert_eq!(roles(&falls).time.as_deref(), Some("time"));
+    let columns = Columns {
+        time: Some("time"),
+        ..Columns::new("temperature_C", "displacement_mm")
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    std::fs::write(&path, &falls).unwrap();
+    for repair in [Repair::Refuse, Repair::Mend] {
+        let refused = Recording::read(&path, columns, repair).unwrap_err();
+        let refused = refused.to_string();
+        assert!(
+            refused.contains("the newest first: bring the rows"),
+            "{refused}"
+        );
+    }
+    let mixed = roles(&table(&|n| 7 * n % 11));
+    assert_eq!(mixed.time, None);
+    let told = &mixed.reasons;
+    assert!(
+        told.iter().any(|told| told.starts_with("no time")),
+        "{told:?}"
+    );
 }
 
 #[test]

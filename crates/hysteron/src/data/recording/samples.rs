@@ -208,6 +208,21 @@ impl Samples {
                 }
             }
         }
+        // Neither as they are nor in segments.
+        if back.len() > FEW && self.places.len() < SHORT * back.len() {
+            let newest = match back.len() + 1 == self.places.len() {
+                true => ", the newest first",
+                false => "",
+            };
+            let problem = format!(
+                "time goes back {} times in {} rows{newest}: bring the rows into the order in which they \
+                 were measured, or read them without time if they are in it",
+                back.len(),
+                self.places.len()
+            );
+            let place = back.first().map(|n| self.places.at(*n));
+            return Err(table.fault_at(place, time_at, problem));
+        }
         match self.fault.take() {
             Some(fault) if repair == Repair::Refuse => {
                 return Err(refusal(fault, &notes, set));
@@ -229,16 +244,6 @@ impl Samples {
                 return Err(table.fault_at(first, None, problem));
             }
             _ => {}
-        }
-        if back.len() > FEW && self.places.len() < SHORT * back.len() {
-            let problem = format!(
-                "time goes back {} times in {} rows: bring the rows into the order in which they \
-                 were measured, or read them without time if they are in it",
-                back.len(),
-                self.places.len()
-            );
-            let place = back.first().map(|n| self.places.at(*n));
-            return Err(table.fault_at(place, time_at, problem));
         }
         if let Some((_, gaps)) = self.time().and_then(gaps)
             && !gaps.is_empty()

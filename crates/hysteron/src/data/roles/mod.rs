@@ -197,6 +197,14 @@ pub(super) fn of_columns(columns: &Columns<'_>, known: [Option<usize>; 4]) -> Ro
         let n = first.filter(|_| roles.input.is_some() && roles.output.is_some())?;
         Some(named("load", n, "which changes"))
     });
+    if time_at.is_none()
+        && let Some(n) = (0..all.len()).find(|n| !is_known(n) && all[*n].is(Quantity::Time))
+    {
+        let name = all[n].name;
+        roles
+            .reasons
+            .push(format!("no time: `{name}` neither rises nor falls"));
+    }
     roles.doubts = doubts;
     roles
 }
@@ -229,13 +237,15 @@ fn clock(all: &[Candidate<'_>], is_known: impl Fn(&usize) -> bool) -> Option<usi
         let Series {
             moves,
             rises,
+            falls,
             rises_evenly,
             stamps,
             ..
         } = candidate.series;
         match candidate.is(Quantity::Time) {
             _ if stamps => Some(0),
-            true if rises && moves => Some(1),
+            // Rows in the order of a clock that falls are a history backwards: reading them says so.
+            true if (rises || falls) && moves => Some(1),
             false if rises_evenly && candidate.is_nameless() => Some(2),
             _ => None,
         }

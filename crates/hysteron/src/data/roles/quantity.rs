@@ -7,6 +7,8 @@ pub(in crate::data) struct Series {
     pub(in crate::data) moves: bool,
     /// Whether hardly any number is below the one before.
     pub(in crate::data) rises: bool,
+    /// Whether hardly any number is above the one before: a log with its newest row first.
+    pub(in crate::data) falls: bool,
     /// Whether nearly each number is above the one before, by as much: a clock or a counter.
     pub(in crate::data) rises_evenly: bool,
     /// Whether its cells are timestamps.

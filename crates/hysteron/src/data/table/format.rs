@@ -65,10 +65,11 @@ fn format_of(
 /// What a file is that begins as JSON; none for any other.
 fn json(head: &[u8]) -> Option<&'static str> {
     begins_as_json(head).then(|| match () {
-        () if begins_as_model(head) => "this is a model, not a table: name a recording",
+        // A session has models in it.
         () if contains(head, "hysteron-studio") => {
             "this is a session of the studio, not a table: open it there"
         }
+        () if begins_as_model(head) => "this is a model, not a table: name a recording",
         () => "this is JSON, not a table: save the columns as CSV",
     })
 }
