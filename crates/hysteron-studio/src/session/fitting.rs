@@ -151,7 +151,8 @@ impl Session {
     /// [`Fault`] why there is none; 103 if it was cancelled.
     pub fn finish(&mut self, finished: Finished) -> Result<Id, Fault> {
         let running = self.running.remove(&finished.id);
-        if running.is_some_and(|running| running.watch.is_cancelled()) {
+        // One that was cancelled is no longer there.
+        if running.is_none_or(|running| running.watch.is_cancelled()) {
             return Err(Fault::cancelled());
         }
         let fitted = finished.found?;

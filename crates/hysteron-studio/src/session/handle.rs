@@ -132,8 +132,9 @@ impl Session {
             }
             Request::JudgeAnew { fit } => self.judge_anew(fit)?,
             Request::Cancel { job } => {
-                let running = self.running.get(&job);
-                let running = running.ok_or_else(|| Fault::gone("work", job))?;
+                // One that waits would stay until its turn.
+                let running = self.running.remove(&job);
+                let running.ok_or_else(|| Fault::gone("work", job))?;
                 running.watch.cancel();
             }
             Request::Forget { fit } => {
