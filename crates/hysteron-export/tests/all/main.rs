@@ -9,6 +9,7 @@ mod arduino;
 mod build;
 mod c;
 mod control;
+mod decay;
 mod delay;
 mod files;
 mod fmu;
