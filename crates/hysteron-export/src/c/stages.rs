@@ -240,7 +240,7 @@ fn check(model: &Model, sampling: &CSampling, bare: bool) -> Result<()> {
         }
         _ => {}
     }
-    let rings = model.constants().get("ring_frequency").first().is_some();
+    let rings = !model.constants().get("ring_frequency").is_empty();
     if sampling.measured && rings {
         let what = "a ring has constants for one sample time alone on the target".into();
         return refused(what, "leave {} out", "measured-dt");
