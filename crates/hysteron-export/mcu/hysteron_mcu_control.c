@@ -493,9 +493,11 @@ int hys_controller_step_after(hys_controller *self, hys_real dt, hys_real refere
     if (control->clock != NULL) {
         code = control->clock->pass(control->clock, self->wanted, self->followed, dt);
     }
+    if (code != HYS_OK) {
+        return code;
+    }
     self->dt = dt;
-    return code != HYS_OK ? code
-                          : sample(self, reference, ahead, heading, reading, action);
+    return sample(self, reference, ahead, heading, reading, action);
 }
 
 int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead, int heading,

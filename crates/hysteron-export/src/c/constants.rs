@@ -174,13 +174,22 @@ impl<T: Number> Constants<T> {
                 + learns.map_or(0, |(bytes, _)| weights * T::BYTES + bytes)
                 + around.map_or(0, |(_, parts)| {
                     let numbers = usize::from(parts.gate) + usize::from(parts.filter);
-                    let bytes =
-                        aligned(2 * word + 13 * T::BYTES + 2 + usize::from(parts.bits() > 0));
+                    let mut bytes = 2 * word + 13 * T::BYTES + 2 + usize::from(parts.bits() > 0);
+                    if numbers > 0 {
+                        bytes = aligned(bytes) + numbers * T::BYTES;
+                    }
+                    if parts.time {
+                        bytes = if word > 2 {
+                            bytes.next_multiple_of(word)
+                        } else {
+                            bytes
+                        } + word;
+                    }
                     let clock = match parts.clock {
                         true => aligned(2 * word) + RATE_NUMBERS * T::BYTES,
                         false => 0,
                     };
-                    bytes + numbers * T::BYTES + usize::from(parts.time) * aligned(word) + clock
+                    aligned(bytes) + clock
                 }),
             state,
             mixed,

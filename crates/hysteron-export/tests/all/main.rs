@@ -15,6 +15,7 @@ mod files;
 mod fmu;
 mod fmu_sources;
 mod page;
+mod parts;
 mod rounding;
 mod shadow;
 mod staged;
