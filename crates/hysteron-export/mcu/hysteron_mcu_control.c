@@ -421,11 +421,13 @@ static int sample(hys_controller *self, hys_real reference, hys_real ahead, int 
         return HYS_VALUE;
     }
     before = self->prediction;
+    measured = reading;
     self->acting = arrives(self, given(self));
     self->silent = is_read ? ZERO : self->silent + dt_of(self);
     if (self->followed != NULL) {
         if (is_read && stands_still(self, reading, reference)) {
             status |= HYS_STUCK;
+            measured = nothing();
         }
         if (is_finite(self->acting)) {
             code = control->model->step(self->followed, self->acting, &self->prediction);
@@ -433,8 +435,9 @@ static int sample(hys_controller *self, hys_real reference, hys_real ahead, int 
     }
     if (is_read && !is_believed(self, reading, before)) {
         status |= HYS_OUTLIER;
+        measured = nothing();
     }
-    measured = sensed(self, status != 0u ? nothing() : reading, &status);
+    measured = sensed(self, measured, &status);
     if (code == HYS_OK) {
         code = solve(self, ahead, heading, &feedforward, &found);
     }
