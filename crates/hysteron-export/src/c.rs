@@ -8,6 +8,7 @@ mod delay;
 mod learners;
 mod name;
 mod notation;
+mod parts;
 mod real;
 mod rounding;
 mod seal;
@@ -18,11 +19,11 @@ mod written;
 
 use algorithm::{ADAPTATION, ALGORITHM, CONTROL, CONTROL_STAGES, DELAY, SHADOW, STAGES};
 use constants::Constants;
-use control::Parts;
 use hysteron::control::Scheme;
 use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use learners::Learners;
+use parts::Parts;
 pub use real::CReal;
 use real::Number;
 use seal::Comment;
@@ -239,7 +240,7 @@ fn texts<T: Number>(
         Some(scheme) => {
             control::check(scheme, model, &constants, sampling.dt)?;
             let staged = constants.stages.as_ref();
-            let parts = Parts::of(scheme, &constants, sampling);
+            let parts = Parts::of(scheme, sampling.measured, model.is_timed());
             let mut around = control::text::<T>(scheme, model, &name, staged, parts)?;
             if options.adaptation {
                 around.include = Some(SHADOW[0].0);
@@ -248,7 +249,7 @@ fn texts<T: Number>(
         }
     };
     let looped = scheme.map(|scheme| {
-        let parts = Parts::of(scheme, &constants, sampling);
+        let parts = Parts::of(scheme, sampling.measured, model.is_timed());
         (control::late(scheme, model), parts)
     });
     let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));

@@ -1,6 +1,6 @@
 //! A model in the number type of the target.
 
-use super::control::Parts;
+use super::parts::Parts;
 use super::real::{Number, unfit};
 use super::rounding::missed;
 use super::stages::{CSampling, Staged};

@@ -1,9 +1,10 @@
 //! The settings of a control loop around a model.
 
-use super::algorithm::{CLOCK, CONTROL, DECAY, FILTER, GATE};
+use super::algorithm::{CLOCK, CONTROL};
 use super::constants::Constants;
+use super::parts::Parts;
 use super::real::{Number, unfit};
-use super::stages::{CSampling, Staged};
+use super::stages::Staged;
 use super::text::Beside;
 use hysteron::control::Scheme;
 use hysteron::{Error, Model, Policy, Remedy, Result, Setting, Sign};
@@ -51,48 +52,6 @@ pub(super) fn check<T: Number>(
 pub(super) fn late(scheme: &Scheme, model: &Model) -> usize {
     let next = 1 + model.delay().at(Some(scheme.interval_s));
     scheme.delay.unwrap_or(next).saturating_sub(1)
-}
-
-/// What a loop has only where it was asked for.
-#[derive(Clone, Copy)]
-pub(super) struct Parts {
-    pub(super) gate: bool,
-    pub(super) filter: bool,
-    /// Measured time.
-    pub(super) time: bool,
-    /// Whether that makes constants of the model anew.
-    pub(super) clock: bool,
-}
-
-impl Parts {
-    pub(super) fn of<T: Number>(
-        scheme: &Scheme,
-        constants: &Constants<T>,
-        sampling: &CSampling,
-    ) -> Self {
-        Self {
-            gate: scheme.gate.is_some(),
-            filter: scheme.filter_s > 0.0,
-            time: sampling.measured,
-            clock: constants.stages.as_ref().is_some_and(|s| s.measured),
-        }
-    }
-
-    /// `HYS_LOOP`, and `has` of a loop.
-    pub(super) fn bits(self) -> u8 {
-        let bits = [self.gate, self.filter, self.time].into_iter().enumerate();
-        bits.map(|(n, there)| u8::from(there) << n).sum()
-    }
-
-    /// Their files.
-    pub(super) fn files(self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        let some = |there: bool, files: &'static [_]| if there { files } else { &[] };
-        let gate = some(self.gate, &GATE).iter();
-        gate.chain(some(self.filter, &FILTER))
-            .chain(some(self.clock, &CLOCK))
-            .chain(some(self.filter || self.clock, &DECAY))
-            .copied()
-    }
 }
 
 pub(super) fn text<T: Number>(
