@@ -22,7 +22,8 @@ fn c(args: &args::ExportC) -> Result<()> {
             let plane = model.plane();
             let range = args.drive_range.or(model.drive);
             let drives = range.unwrap_or((plane.bottom(), plane.max()));
-            Some(control(&model, dt, drives, args.gains)?)
+            let readings = (args.gate, args.filter);
+            Some(control(&model, dt, drives, args.gains, readings)?)
         }
         _ => None,
     };
@@ -30,8 +31,12 @@ fn c(args: &args::ExportC) -> Result<()> {
         None => CSampling {
             dt: args.dt,
             drive: args.drive_range,
+            measured: false,
         },
-        Some(_) => sampling(&model, args.dt),
+        Some(_) => CSampling {
+            measured: args.measured_dt,
+            ..sampling(&model, args.dt)
+        },
     };
     let options = COptions {
         real: args.real.into(),
@@ -117,7 +122,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
     // The sketches have the share of time for which current flows as the drive.
     let (low, high) = model.drive.unwrap_or((0.0, 1.0));
     let drives = args.drive_range.unwrap_or((low.max(0.0), high.min(1.0)));
-    let control = control(&model, args.dt, drives, args.gains)?;
+    let control = control(&model, args.dt, drives, args.gains, (None, None))?;
     let options = ArduinoOptions {
         name: args.name.as_deref(),
         source: &args.model,
@@ -175,11 +180,19 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
     print(&lines.join("\n"))
 }
 
-/// A loop around a model, with gains from it where none are given.
-fn control(model: &Model, dt: f64, drives: (f64, f64), gains: Option<Gains>) -> Result<Scheme> {
+/// A loop around a model, with gains from it where none are given, and with gate and filter.
+fn control(
+    model: &Model,
+    dt: f64,
+    drives: (f64, f64),
+    gains: Option<Gains>,
+    (gate, filter): (Option<f64>, Option<f64>),
+) -> Result<Scheme> {
     let mut scheme = Scheme {
         tolerance: model.usual_tolerance(),
         delay: Some(1 + model.delay().at(Some(dt))),
+        gate,
+        filter_s: filter.unwrap_or(0.0),
         ..Scheme::new(dt, drives)
     };
     scheme.pid = Some(match gains {
@@ -209,7 +222,7 @@ fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
 fn sampling(model: &Model, dt: Option<f64>) -> CSampling {
     CSampling {
         dt: dt.filter(|_| model.is_timed()),
-        drive: None,
+        ..CSampling::default()
     }
 }
 
@@ -222,6 +235,8 @@ fn loop_json(scheme: &Scheme) -> serde_json::Value {
         "tolerance": scheme.tolerance,
         "lost_s": scheme.safety.lost_s,
         "stuck_s": scheme.safety.stuck_s,
+        "gate": scheme.gate,
+        "filter_s": scheme.filter_s,
     })
 }
 
@@ -253,7 +268,8 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     let fmu = match args.dt.zip(args.drive_range).filter(|_| args.controller) {
         None => hysteron_export::fmu(&model, &options, target)?,
         Some((dt, drives)) => {
-            let scheme = control(&model, dt, drives, args.gains)?;
+            let readings = (args.gate, args.filter);
+            let scheme = control(&model, dt, drives, args.gains, readings)?;
             hysteron_export::fmu_controlled(&model, &scheme, &options, target)?
         }
     };

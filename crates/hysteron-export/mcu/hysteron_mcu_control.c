@@ -1,6 +1,9 @@
 /* The controller. Beside each part stands the file of the library that it follows. */
 #include "hysteron_mcu_control.h"
 #include "hysteron_mcu_internal.h"
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+#include "hysteron_mcu_filter.h"
+#endif
 
 #define FADE 10u               /* samples within which a difference of the feedforward fades */
 #define NOT_TURNED ((hys_real)8)
@@ -26,6 +29,72 @@ static hys_real nothing(void)
 static hys_real size_of(hys_real x)
 {
     return x < ZERO ? -x : x;
+}
+
+/* The time since the sample before. */
+static hys_real dt_of(const hys_controller *self)
+{
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+    return self->dt;
+#else
+    return self->control->dt;
+#endif
+}
+
+/* ---- What a loop has only where it was asked for ---- */
+
+/* Whether a reading is no spike. The model expected `before` for the last one. */
+static int is_believed(hys_controller *self, hys_real reading, hys_real before)
+{
+#if (HYS_LOOP & HYS_HAS_GATE) != 0u
+    hys_real expected = ZERO;
+    if ((self->control->has & HYS_HAS_GATE) == 0u) {
+        return 1;
+    }
+    if (self->followed != NULL && is_finite(self->acting)) {
+        expected = self->prediction - before;
+    }
+    return hys_gate_passes(&self->gate, self->control->gate, reading, expected);
+#else
+    (void)self;
+    (void)reading;
+    (void)before;
+    return 1;
+#endif
+}
+
+/* A reading behind the filter, `passed` s after the last one. */
+static hys_real seen(hys_controller *self, hys_real reading, hys_real passed)
+{
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    return filter(self->control, &self->seen, reading, passed);
+#else
+    (void)self;
+    (void)passed;
+    return reading;
+#endif
+}
+
+/* The reference as late as the filter makes the reading. */
+static hys_real asked_for(hys_controller *self, hys_real reference)
+{
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    return filter(self->control, &self->asked, reference, dt_of(self));
+#else
+    (void)self;
+    return reference;
+#endif
+}
+
+/* The last drive, as late too; NaN before it. */
+static hys_real given(hys_controller *self)
+{
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    if (is_finite(self->drive)) {
+        return filter(self->control, &self->given, self->drive, dt_of(self));
+    }
+#endif
+    return self->drive;
 }
 
 /* ---- A model without stages ---- */
@@ -99,28 +168,22 @@ static int stands_still(hys_controller *self, hys_real reading, hys_real wanted)
         self->still = 0u;
         self->news = (unsigned char)(self->news + (self->news < ALIVE));
     }
-    self->still_s = counts || jammed ? self->still_s + control->dt : ZERO;
+    self->still_s = counts || jammed ? self->still_s + dt_of(self) : ZERO;
     return self->still >= CHANCE;
 }
 
 /* The reading, or NaN where there is none: sensor.rs. */
-static hys_real sensed(hys_controller *self, hys_real wanted, hys_real reading,
-                       unsigned char *status)
+static hys_real sensed(hys_controller *self, hys_real reading, unsigned char *status)
 {
     const hys_control *control = self->control;
-    int repeated;
-    self->silent = is_finite(reading) ? ZERO : self->silent + control->dt;
-    if (self->followed != NULL && is_finite(reading) && stands_still(self, reading, wanted)) {
-        *status |= HYS_STUCK;
-        reading = nothing();
-    }
-    repeated = control->repeats_s > ZERO && reading == self->last;
+    int repeated = control->repeats_s > ZERO && reading == self->last;
     if (is_finite(reading) && !repeated) {
+        hys_real passed = self->gap + dt_of(self);
         self->last = reading;
         self->gap = ZERO;
-        return reading;
+        return seen(self, reading, passed);
     }
-    self->gap += control->dt;
+    self->gap += dt_of(self);
     if (!repeated || self->gap >= control->repeats_s) {
         *status |= HYS_NO_READING;
     }
@@ -209,7 +272,7 @@ static hys_real follow(hys_controller *self, hys_real error, hys_real measured, 
                        hys_real low, hys_real high)
 {
     const hys_control *control = self->control;
-    hys_real gain = control->gain, dt = control->dt, fixed, out, slope = ZERO;
+    hys_real gain = control->gain, dt = dt_of(self), fixed, out, slope = ZERO;
     if (is_finite(self->measured) && control->derivative_s > ZERO) {
         hys_real share = dt / (dt + control->derivative_s / DERIVATIVE_FILTER);
         slope = self->slope + share * ((self->measured - measured) / dt - self->slope);
@@ -310,6 +373,12 @@ int hys_controller_start(hys_controller *self, const hys_control *control, hys_s
     self->branch = HYS_HOLD;
     self->left = self->aimed = self->begun = self->held_low = self->held_high = 0u;
     self->repeats = self->is_safe = 0u;
+#if (HYS_LOOP & HYS_HAS_GATE) != 0u
+    self->gate.believed = nothing();
+#endif
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    self->seen = self->given = self->asked = nothing();
+#endif
     return HYS_OK;
 }
 
@@ -322,6 +391,9 @@ int hys_controller_go_on_from(hys_controller *self, hys_real drive)
         return HYS_INPUT_NOT_FINITE;
     }
     self->from = self->drive = drive;
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    self->asked = nothing(); /* the reference begins anew */
+#endif
     if (self->is_safe) {
         self->is_safe = 0u;
         self->silent = self->still_s = ZERO;
@@ -330,13 +402,14 @@ int hys_controller_go_on_from(hys_controller *self, hys_real drive)
     return HYS_OK;
 }
 
-int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead, int heading,
-                        hys_real reading, hys_action *action)
+/* One sample, after the time that is known. */
+static int sample(hys_controller *self, hys_real reference, hys_real ahead, int heading,
+                  hys_real reading, hys_action *action)
 {
     const hys_control *control;
-    hys_real measured, feedforward, asked, drive, slack;
+    hys_real measured, feedforward, asked, drive, slack, before;
     unsigned char status = 0u;
-    int found, code = HYS_OK;
+    int found, is_read = is_finite(reading), code = HYS_OK;
     if (self == NULL || action == NULL || self->control == NULL) {
         return HYS_NULL;
     }
@@ -347,11 +420,24 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
     if (heading != HYS_HOLD && heading != HYS_RISING && heading != HYS_FALLING) {
         return HYS_VALUE;
     }
-    self->acting = arrives(self, self->drive);
-    measured = sensed(self, reference, reading, &status);
-    if (self->followed != NULL && is_finite(self->acting)) {
-        code = control->model->step(self->followed, self->acting, &self->prediction);
+    before = self->prediction;
+    measured = reading;
+    self->acting = arrives(self, given(self));
+    self->silent = is_read ? ZERO : self->silent + dt_of(self);
+    if (self->followed != NULL) {
+        if (is_read && stands_still(self, reading, reference)) {
+            status |= HYS_STUCK;
+            measured = nothing();
+        }
+        if (is_finite(self->acting)) {
+            code = control->model->step(self->followed, self->acting, &self->prediction);
+        }
     }
+    if (is_read && !is_believed(self, reading, before)) {
+        status |= HYS_OUTLIER;
+        measured = nothing();
+    }
+    measured = sensed(self, measured, &status);
     if (code == HYS_OK) {
         code = solve(self, ahead, heading, &feedforward, &found);
     }
@@ -361,14 +447,15 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
     if (found == HYS_LOW || found == HYS_HIGH) {
         status |= HYS_OUT_OF_REACH;
     }
+    reference = asked_for(self, reference);
     asked = answer(self, feedforward, reference, measured);
     asked = hys_clamp(asked, control->drive_min, control->drive_max);
     drive = asked;
     if (control->slew > ZERO && is_finite(self->drive)) {
-        hys_real way = control->slew * control->dt;
+        hys_real way = control->slew * dt_of(self);
         drive = hys_clamp(drive, self->drive - way, self->drive + way);
     }
-    slack = control->dt * (hys_real)0.01;
+    slack = dt_of(self) * (hys_real)0.01;
     if ((control->lost_s > ZERO && self->silent >= control->lost_s - slack)
         || (control->stuck_s > ZERO && (self->still == 0u || self->still >= CHANCE)
             && self->still_s >= control->stuck_s - slack)) {
@@ -390,3 +477,48 @@ int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead
     action->status = status;
     return HYS_OK;
 }
+
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+
+int hys_controller_step_after(hys_controller *self, hys_real dt, hys_real reference,
+                              hys_real ahead, int heading, hys_real reading, hys_action *action)
+{
+    const hys_control *control;
+    int code = HYS_OK;
+    if (self == NULL || self->control == NULL) {
+        return HYS_NULL;
+    }
+    control = self->control;
+    if (!(dt > ZERO && is_finite(dt))
+        || (dt != control->dt && (control->has & HYS_HAS_TIME) == 0u)) {
+        return HYS_VALUE;
+    }
+    if (control->clock != NULL) {
+        code = control->clock->pass(control->clock, self->wanted, self->followed, dt);
+    }
+    if (code != HYS_OK) {
+        return code;
+    }
+    self->dt = dt;
+    return sample(self, reference, ahead, heading, reading, action);
+}
+
+int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead, int heading,
+                        hys_real reading, hys_action *action)
+{
+    if (self == NULL || self->control == NULL) {
+        return HYS_NULL;
+    }
+    return hys_controller_step_after(self, self->control->dt, reference, ahead, heading, reading,
+                                     action);
+}
+
+#else
+
+int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead, int heading,
+                        hys_real reading, hys_action *action)
+{
+    return sample(self, reference, ahead, heading, reading, action);
+}
+
+#endif

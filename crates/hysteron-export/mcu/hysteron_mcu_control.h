@@ -12,16 +12,26 @@
  *   - After a time without a reading, or with one that stands still, the drive is the safe one; so it
  *     is where the reading stands still but for its noise while the drive is at a limit.
  *
- * The results have the bits of the library's controller with a fixed model, without filter, gate
- * and inner loop, in the same number type. What hysteron_mcu.h says of compilers and
- * errors holds here.
+ *   - Where they were asked for: a gate, after which a spike is a missing reading until two more
+ *     agree with it; a low-pass filter, which the reference has as well; the measured time of a
+ *     sample.
+ *
+ * The results have the bits of the library's controller with a fixed model, without an inner loop,
+ * in the same number type. What hysteron_mcu.h says of compilers and errors holds here.
  *
  * Worst case of one call of hys_controller_step: two steps and one inverse step of the model, and
- * at the first sample one copy of at most 4K + 8 turning points. */
+ * at the first sample one copy of at most 4K + 8 turning points. A gate sorts 15 numbers, a filter
+ * computes three exponentials, and measured time one for each time constant of the model. */
 #ifndef HYSTERON_MCU_CONTROL_H
 #define HYSTERON_MCU_CONTROL_H
 
 #include "hysteron_mcu.h"
+
+/* The parts that the code has, a bit for each: those that were asked for. */
+#define HYS_LOOP 7u
+#define HYS_HAS_GATE 1u
+#define HYS_HAS_FILTER 2u
+#define HYS_HAS_TIME 4u
 
 #ifdef __cplusplus
 extern "C" {
@@ -36,6 +46,13 @@ typedef struct {
 } hys_in_loop;
 
 extern const hys_in_loop hys_plain_in_loop, hys_staged_in_loop;
+
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+/* What makes the constants of a model for a measured time (hysteron_mcu_clock.h). */
+typedef struct hys_clock {
+    int (*pass)(const struct hys_clock *self, hys_state *wanted, hys_state *followed, hys_real dt);
+} hys_clock;
+#endif
 
 /* The settings of a loop. Written by `hysteron export c --controller`; a program may copy and
  * change them. Times in seconds. */
@@ -53,7 +70,36 @@ typedef struct {
     hys_real lost_s, stuck_s;          /* until the drive is the safe one; 0 for never */
     unsigned char feedback;            /* 0 for the inverse alone */
     unsigned char falls;               /* 1 where the output falls as the drive rises */
+#if HYS_LOOP != 0u
+    unsigned char has;                 /* which of its parts this loop has */
+#endif
+#if (HYS_LOOP & HYS_HAS_GATE) != 0u
+    hys_real gate;                     /* what deviates by less is never held back */
+#endif
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    hys_real filter_s;                 /* time constant of the filter */
+#endif
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+    const hys_clock *clock;            /* null where the model does not depend on time */
+#endif
 } hys_control;
+
+#if (HYS_LOOP & HYS_HAS_GATE) != 0u
+#define HYS_REMEMBERED 15u /* deviations that the usual one is taken from */
+
+/* What a gate remembers: the last reading that it believed, the change that led there, the samples
+ * since, and the sizes of the last deviations. */
+typedef struct {
+    hys_real believed, slope, steps, deviations[HYS_REMEMBERED];
+    unsigned char known, next;
+    signed char beyond;                /* readings beyond it in a row; negative below it */
+} hys_spikes;
+
+/* Whether a finite reading is believed. `expected` is by how much the model's output changed, and a
+ * deviation up to `least` is never held back. */
+int hys_gate_passes(hys_spikes *self, hys_real least, hys_real reading, hys_real expected);
+#endif
+
 
 /* What a controller remembers. Only these functions may use its members. */
 typedef struct {
@@ -71,6 +117,15 @@ typedef struct {
     signed char branch;                /* of the reference */
     unsigned char left;
     unsigned aimed : 1, begun : 1, held_low : 1, held_high : 1, repeats : 1, is_safe : 1;
+#if (HYS_LOOP & HYS_HAS_GATE) != 0u
+    hys_spikes gate;
+#endif
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    hys_real seen, given, asked;       /* reading, drive and reference behind the filter */
+#endif
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+    hys_real dt;                       /* of this sample */
+#endif
 } hys_controller;
 
 /* Flags of a sample. */
@@ -79,7 +134,8 @@ enum {
     HYS_OUT_OF_REACH = 2,  /* no input gives the reference: the nearest one was taken */
     HYS_NO_READING = 4,    /* the reading was missing or held back; the loop went on without it */
     HYS_STUCK = 8,         /* the reading stands still where it has to move */
-    HYS_SAFE = 16          /* the loop is given up: the drive is the safe one */
+    HYS_SAFE = 16,         /* the loop is given up: the drive is the safe one */
+    HYS_OUTLIER = 64       /* the gate held the reading back */
 };
 
 typedef struct {
@@ -108,6 +164,14 @@ int hys_controller_go_on_from(hys_controller *self, hys_real drive);
  * changed then; those of the model's inverse. */
 int hys_controller_step(hys_controller *self, hys_real reference, hys_real ahead, int heading,
                         hys_real reading, hys_action *action);
+
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+/* The same, `dt` s after the sample before. Nothing is changed by these errors: HYS_VALUE for a `dt`
+ * that is not finite and above zero, or another than that of a loop that was exported without
+ * measured time; HYS_STATE_MISMATCH for states of another model. */
+int hys_controller_step_after(hys_controller *self, hys_real dt, hys_real reference,
+                              hys_real ahead, int heading, hys_real reading, hys_action *action);
+#endif
 
 #ifdef __cplusplus
 }

@@ -58,6 +58,11 @@ int hys_shadow_step(hys_shadow *self, hys_real reading, const hys_action *action
         || (action->status & (HYS_NO_READING | HYS_STUCK | HYS_SAFE)) != 0u || !is_finite(reading)) {
         return hys_step(&self->adaptive->state, acting, &expected);
     }
+#if (HYS_LOOP & HYS_HAS_FILTER) != 0u
+    if ((controller->control->has & HYS_HAS_FILTER) != 0u) {
+        reading = controller->seen; /* the drives are as late */
+    }
+#endif
     code = hys_adapt_step(self->adaptive, acting, reading, &expected, &outcome);
     if (code != HYS_OK) {
         return code;

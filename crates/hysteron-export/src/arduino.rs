@@ -78,6 +78,10 @@ pub fn arduino<'a>(
     scheme: &Scheme,
 ) -> Result<Arduino> {
     let target = target.into();
+    if scheme.gate.is_some() || scheme.filter_s > 0.0 || sampling.measured {
+        let what = "the sketches have no gate, no filter and no measured time";
+        return Err(Error::Export(what.into()));
+    }
     let c = COptions {
         real: CReal::Float,
         name: options.name,

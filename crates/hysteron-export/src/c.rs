@@ -8,6 +8,7 @@ mod delay;
 mod learners;
 mod name;
 mod notation;
+mod parts;
 mod real;
 mod rounding;
 mod seal;
@@ -22,6 +23,7 @@ use hysteron::control::Scheme;
 use hysteron::{Destination, Error, Model, Remedy, Result, Setting};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use learners::Learners;
+use parts::Parts;
 pub use real::CReal;
 use real::Number;
 use seal::Comment;
@@ -103,7 +105,11 @@ pub fn c<'a>(
 ///     source: "wire.json".as_ref(),
 ///     adaptation: false,
 /// };
-/// let sampling = CSampling { dt: Some(0.01), drive: Some((0.0, 100.0)) };
+/// let sampling = CSampling {
+///     dt: Some(0.01),
+///     drive: Some((0.0, 100.0)),
+///     ..CSampling::default()
+/// };
 /// let made = c_sampled(&model, folder.path(), &options, &sampling)?;
 /// assert_eq!((made.stages, made.dt), (vec!["body"], Some(0.01)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -124,8 +130,9 @@ pub fn c_sampled<'a>(
 /// As [`c_sampled`], with a control loop around the model: `hysteron_mcu_control.h`, `.c`, with
 /// stages `hysteron_mcu_control_stages.c`, and its settings as `NAME_control`. The C gives the digits
 /// of [`hysteron::control::Controller`] with the fixed model as its compensator, which
-/// stands in the place of that of `scheme`. A filter, a gate and an inner loop are not to be had
-/// there. With [`COptions::adaptation`] a learner runs in the shadow of the fixed model
+/// stands in the place of that of `scheme`. An inner loop is not to be had there. A filter, a gate
+/// and measured time ([`CSampling::measured`]) have code and memory only where they are asked for;
+/// all models of a folder need the same of them. With [`COptions::adaptation`] a learner runs in the shadow of the fixed model
 /// (`hysteron_mcu_shadow.h`, `.c`), as in [`hysteron::control::Compensator::shadowed`].
 ///
 /// # Errors
@@ -204,6 +211,11 @@ fn texts<T: Number>(
     sampling: &CSampling,
     (scheme, alone): (Option<&Scheme>, bool),
 ) -> Result<(CExport, Vec<String>)> {
+    if sampling.measured && scheme.is_none() {
+        let remedy = Remedy::new("leave {} out", [Setting::on("measured-dt")]);
+        let what = "measured time is for a controller";
+        return Err(Error::Export(what.into()).remedied(remedy));
+    }
     let constants = Constants::<T>::new(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
         let what = "a model with stages cannot learn on the target";
@@ -227,15 +239,19 @@ fn texts<T: Number>(
         None => dead.map(|dead| delay::text(&name, dead)),
         Some(scheme) => {
             control::check(scheme, model, &constants, sampling.dt)?;
-            let staged = constants.stages.is_some();
-            let mut around = control::text::<T>(scheme, model, (&name, staged))?;
+            let staged = constants.stages.as_ref();
+            let parts = Parts::of(scheme, sampling.measured, model.is_timed());
+            let mut around = control::text::<T>(scheme, model, &name, staged, parts)?;
             if options.adaptation {
                 around.include = Some(SHADOW[0].0);
             }
             Some(around)
         }
     };
-    let late = scheme.map(|scheme| control::late(scheme, model));
+    let looped = scheme.map(|scheme| {
+        let parts = Parts::of(scheme, sampling.measured, model.is_timed());
+        (control::late(scheme, model), parts)
+    });
     let learns = learners.map(|learners| (learners.constants(), learners.numbers()[0]));
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
@@ -247,6 +263,7 @@ fn texts<T: Number>(
     if scheme.is_some() {
         algorithm.extend(CONTROL);
         algorithm.extend(constants.stages.iter().flat_map(|_| CONTROL_STAGES));
+        algorithm.extend(looped.iter().flat_map(|(_, parts)| parts.files()));
         algorithm.extend(options.adaptation.then_some(SHADOW).iter().flatten());
     }
     algorithm.extend(dead.iter().flat_map(|_| DELAY));
@@ -265,14 +282,18 @@ fn texts<T: Number>(
             .as_ref()
             .map_or_else(Vec::new, |stages| stages.names()),
         dt: sampling.dt,
-        memory: constants.memory(4, learns, late),
-        avr: constants.memory(2, learns, late),
+        memory: constants.memory(4, learns, looped),
+        avr: constants.memory(2, learns, looped),
         worst_case: CWorstCase::new(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
     let (float, wanted) = (CReal::Float.line(), options.real.line());
     let texts = algorithm.iter().map(|(_, text)| {
         let text = text.replace(&float, &wanted);
+        let text = match looped {
+            Some((_, parts)) => algorithm::with_parts(&text, parts.bits()),
+            None => text,
+        };
         let text = match alone {
             true if options.adaptation => algorithm::with_tables_in_ram(&text),
             true => algorithm::with_stages(&text, &export.stages),

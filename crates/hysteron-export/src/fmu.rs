@@ -101,8 +101,8 @@ fn block(options: &FmuOptions) -> Block<'static> {
 /// ```
 ///
 /// # Errors
-/// As [`fmu`]; [`Error::Export`] too for a model with a load, and for a filter, a gate or an inner
-/// loop; as [`hysteron::control::Controller::new`].
+/// As [`fmu`]; [`Error::Export`] too for a model with a load, for an inner loop and for a gate
+/// of zero, which is none here; as [`hysteron::control::Controller::new`].
 pub fn fmu_controlled<'a>(
     model: &Model,
     scheme: &Scheme,

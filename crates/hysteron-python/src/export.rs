@@ -81,6 +81,7 @@ impl Model {
         let sampling = CSampling {
             dt,
             drive: drive_range,
+            ..CSampling::default()
         };
         let export = hysteron_export::c_sampled(
             &self.inner,

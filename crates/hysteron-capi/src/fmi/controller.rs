@@ -1,13 +1,12 @@
 //! The third block: a model and its inverse in a control loop, with PID feedback. It gives the
-//! drives of `hysteron::control::Controller` with a fixed model, without filter, gate and inner
-//! loop.
+//! drives of `hysteron::control::Controller` with a fixed model, without an inner loop.
 
 use super::block::{Block, Inputs, Outputs};
 use super::settings::Settings;
-use super::state::{Loop, State, Turning};
+use super::state::{Filters, Loop, State, Turning};
 use super::{Problem, Result};
 use crate::delay::{MOST, UnderWay};
-use hysteron_core::control::{Cause, Pid, Silence, Standstill, clamp};
+use hysteron_core::control::{Cause, Gate, LowPass, Pid, Silence, Standstill, clamp};
 use hysteron_core::{Direction, Status};
 
 /// Samples within which a difference of the feedforward fades.
@@ -30,6 +29,24 @@ impl Turning {
     }
 }
 
+impl Filters {
+    fn new(filter_s: f64) -> Self {
+        let filter = LowPass::new(filter_s);
+        Self {
+            reading: filter.clone(),
+            gap: 0.0,
+            drive: filter.clone(),
+            reference: filter,
+        }
+    }
+
+    fn set(&mut self, filter_s: f64) {
+        for filter in [&mut self.reading, &mut self.drive, &mut self.reference] {
+            filter.set(filter_s);
+        }
+    }
+}
+
 impl Loop {
     pub(crate) fn new(block: &Block, followed: State) -> Self {
         let settings = block.control.settings;
@@ -39,6 +56,8 @@ impl Loop {
             pid: Pid::new(settings.terms),
             standstill: Standstill::default(),
             silence: Silence::default(),
+            gate: Gate::new(settings.gate),
+            filters: Filters::new(settings.filter_s),
             under_way: UnderWay::new(block.dead, vec![0.0; MOST]),
             from: None,
             fade: (0.0, 0),
@@ -71,6 +90,7 @@ const OUT_OF_REACH: i32 = 2;
 const NO_READING: i32 = 4;
 const STUCK: i32 = 8;
 const SAFE: i32 = 16;
+const OUTLIER: i32 = 64;
 
 impl Block {
     /// One sample of the loop. `wanted` is the state of the inverse.
@@ -96,15 +116,18 @@ impl Block {
             }
         }
         if own.manual && !inputs.manual {
-            own.go_on();
+            own.go_on(settings);
         }
         own.manual = inputs.manual;
         let mut flag = 0;
-        let measured = own.read(self, settings, inputs, dt, &mut flag);
+        own.filters.set(settings.filter_s);
+        let is_stuck = own.sense(self, settings, inputs, dt);
+        let before = own.prediction;
         if let Some(signal) = own.acting {
             let acting = Inputs { signal, ..*inputs };
             own.prediction = self.forward(&mut own.followed, &acting, dt)?.output;
         }
+        let measured = own.read(settings, inputs.measured, (is_stuck, before), dt, &mut flag);
         let asked = match inputs.manual {
             true => {
                 own.aimed = false;
@@ -118,7 +141,8 @@ impl Block {
                 if status.is_out_of_reach() {
                     flag |= OUT_OF_REACH;
                 }
-                own.answer(settings, feedforward, inputs.signal, measured, dt)
+                let reference = own.filters.reference.pass(inputs.signal, dt);
+                own.answer(settings, feedforward, reference, measured, dt)
             }
         };
         let (low, high) = settings.drives;
@@ -181,24 +205,20 @@ impl Block {
 
 impl Loop {
     /// Goes on from the last drive without a bump.
-    fn go_on(&mut self) {
+    fn go_on(&mut self, settings: &Settings) {
         self.from = self.drive;
+        self.filters.reference = LowPass::new(settings.filter_s);
         if self.silence.given_up() {
             self.silence = Silence::default();
             self.standstill.forgive();
         }
     }
 
-    /// The reading, where there is a valid one, and the drive that it answers.
-    fn read(
-        &mut self,
-        block: &Block,
-        settings: &Settings,
-        inputs: &Inputs,
-        dt: f64,
-        flag: &mut i32,
-    ) -> Option<f64> {
+    /// Takes the drive that the reading answers, and tells whether that stands still where it has to
+    /// move.
+    fn sense(&mut self, block: &Block, settings: &Settings, inputs: &Inputs, dt: f64) -> bool {
         self.acting = self.drive.map(|drive| {
+            let drive = self.filters.drive.pass(drive, dt);
             let acting = self.under_way.acting(drive, Some(dt));
             self.under_way.push(drive, Some(dt));
             acting
@@ -211,17 +231,40 @@ impl Loop {
             drive: self.drive.unwrap_or(settings.drives.0),
             drives: settings.drives,
         };
-        let stuck = reading.is_finite() && self.standstill.push(reading, cause, dt).is_some();
+        let is_stuck = reading.is_finite() && self.standstill.push(reading, cause, dt).is_some();
         let stuck_s = self.standstill.stuck_s();
         self.silence.push(settings.safety(), reading, stuck_s, dt);
-        if stuck {
+        is_stuck
+    }
+
+    /// The reading behind the filter, where there is a valid one. The model expected `before` for
+    /// the last one.
+    fn read(
+        &mut self,
+        settings: &Settings,
+        reading: f64,
+        (is_stuck, before): (bool, f64),
+        dt: f64,
+        flag: &mut i32,
+    ) -> Option<f64> {
+        if is_stuck {
             *flag |= STUCK;
         }
-        let measured = Some(reading).filter(|reading| reading.is_finite() && !stuck);
-        if measured.is_none() {
-            *flag |= NO_READING;
+        if reading.is_finite() && settings.gate > 0.0 {
+            let expected = self.acting.map_or(0.0, |_| self.prediction - before);
+            self.gate.set(settings.gate);
+            if !self.gate.passes(reading, || expected) {
+                *flag |= OUTLIER;
+            }
         }
-        measured
+        if !reading.is_finite() || *flag & (STUCK | OUTLIER) > 0 {
+            *flag |= NO_READING;
+            self.filters.gap += dt;
+            return None;
+        }
+        let passed = self.filters.gap + dt;
+        self.filters.gap = 0.0;
+        Some(self.filters.reading.pass(reading, passed))
     }
 
     /// The drive for a measured output, or without one.

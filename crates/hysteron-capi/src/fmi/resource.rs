@@ -54,11 +54,11 @@
 //!
 //! A controller has one more line after `block`: tolerance, range of the output, gain, integral and
 //! derivative time, lowest and highest drive, slew, times until a missing and a stuck reading end
-//! the loop:
+//! the loop, gate, and the filter's time constant:
 //!
 //! ```text
 //! block controller
-//! control 0.1 10.0 0.5 0.2 0.0 0.0 1.0 5.0 0.5 1.0
+//! control 0.1 10.0 0.5 0.2 0.0 0.0 1.0 5.0 0.5 1.0 0.2 0.0
 //! ```
 //!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the

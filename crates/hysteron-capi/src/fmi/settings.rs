@@ -13,10 +13,14 @@ pub(crate) struct Settings {
     /// Until the drive is the safe one, s; 0 for never.
     pub(crate) lost_s: f64,
     pub(crate) stuck_s: f64,
+    /// What deviates by less is never held back; 0 for no gate.
+    pub(crate) gate: f64,
+    /// Time constant of the filter, s; 0 for none.
+    pub(crate) filter_s: f64,
 }
 
 /// How many numbers they are.
-pub(crate) const SETTINGS: usize = 8;
+pub(crate) const SETTINGS: usize = 10;
 
 impl Settings {
     /// In the order of the variables, and of the line in the model's text.
@@ -37,6 +41,8 @@ impl Settings {
             &mut self.slew,
             times.0,
             times.1,
+            &mut self.gate,
+            &mut self.filter_s,
         ]
     }
 
@@ -50,6 +56,8 @@ impl Settings {
             slew,
             lost_s,
             stuck_s,
+            gate,
+            filter_s,
         ] = numbers;
         Self {
             terms: Terms {
@@ -61,6 +69,8 @@ impl Settings {
             slew,
             lost_s,
             stuck_s,
+            gate,
+            filter_s,
         }
     }
 
@@ -69,11 +79,17 @@ impl Settings {
         let from_zero = |value: f64| value >= 0.0 && value.is_finite();
         let (low, high) = self.drives;
         let times = [self.terms.integral_s, self.terms.derivative_s];
-        let others = [self.slew, self.lost_s, self.stuck_s];
+        let others = [
+            self.slew,
+            self.lost_s,
+            self.stuck_s,
+            self.gate,
+            self.filter_s,
+        ];
         match () {
             () if !self.terms.gain.is_finite() => Some("the gain must be a finite number"),
             () if !times.into_iter().chain(others).all(from_zero) => {
-                Some("times and slew must be finite and from zero on")
+                Some("times, slew and gate must be finite and from zero on")
             }
             // Written so that NaN fails the comparison.
             () if !(low < high && (high - low).is_finite()) => {
@@ -119,6 +135,8 @@ impl Control {
             slew: 0.0,
             lost_s: 0.0,
             stuck_s: 0.0,
+            gate: 0.0,
+            filter_s: 0.0,
         },
         tolerance: 0.0,
         range: 0.0,
@@ -128,10 +146,10 @@ impl Control {
     pub(crate) fn read(lines: &mut Lines<'_>) -> Parsed<Self> {
         let numbers = lines.numbers("control")?;
         let Some(([tolerance, range], settings)) = numbers.split_first_chunk() else {
-            return lines.fault("`control` and 10 numbers are expected");
+            return lines.fault("`control` and 12 numbers are expected");
         };
         let Ok(settings) = <[f64; SETTINGS]>::try_from(settings) else {
-            return lines.fault("`control` and 10 numbers are expected");
+            return lines.fault("`control` and 12 numbers are expected");
         };
         let settings = Settings::of(settings);
         match settings.fault() {

@@ -1,7 +1,7 @@
 //! What the blocks remember.
 
 use crate::delay::UnderWay;
-use hysteron_core::control::{Pid, Silence, Standstill};
+use hysteron_core::control::{Gate, LowPass, Pid, Silence, Standstill};
 use hysteron_core::{Direction, Model, Placed, StageState, Turn};
 
 /// What a block remembers.
@@ -34,6 +34,9 @@ pub(crate) struct Loop {
     pub(crate) pid: Pid,
     pub(crate) standstill: Standstill,
     pub(crate) silence: Silence,
+    pub(crate) gate: Gate,
+    /// Filters of the readings, and of drives and reference, which it makes as late.
+    pub(crate) filters: Filters,
     pub(crate) under_way: UnderWay<Vec<f64>>,
     /// The drive to go on from at the next sample, the difference that fades, and for how long.
     pub(crate) from: Option<f64>,
@@ -44,6 +47,16 @@ pub(crate) struct Loop {
     pub(crate) held: (bool, bool),
     pub(crate) turning: Turning,
     pub(crate) manual: bool,
+}
+
+/// Low-pass filters of one time constant.
+#[derive(Debug, Clone)]
+pub(crate) struct Filters {
+    pub(crate) reading: LowPass,
+    /// Time since the last reading, s.
+    pub(crate) gap: f64,
+    pub(crate) drive: LowPass,
+    pub(crate) reference: LowPass,
 }
 
 /// The branch that the reference is on, as `hysteron::Turning` finds it.

@@ -71,6 +71,26 @@ pub(crate) struct ExportC {
     #[arg(long, value_name = "GAIN,S,S", value_parser = parse_gains, allow_hyphen_values = true,
         requires = "controller")]
     pub(crate) gains: Option<Gains>,
+    /// A gate against spikes in its readings: what deviates by less than this is never one, in the
+    /// output's unit
+    #[arg(
+        long,
+        value_name = "SIZE",
+        allow_hyphen_values = true,
+        requires = "controller"
+    )]
+    pub(crate) gate: Option<f64>,
+    /// The time constant of a low-pass filter on its readings
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_hyphen_values = true,
+        requires = "controller"
+    )]
+    pub(crate) filter: Option<f64>,
+    /// Also write what takes the measured time of each sample
+    #[arg(long, requires = "controller")]
+    pub(crate) measured_dt: bool,
     /// The sample time on the target, for a model that depends on time, and for a controller
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) dt: Option<f64>,
@@ -171,6 +191,23 @@ pub(crate) struct ExportFmu {
     #[arg(long, value_name = "GAIN,S,S", value_parser = parse_gains, allow_hyphen_values = true,
         requires = "controller")]
     pub(crate) gains: Option<Gains>,
+    /// A gate against spikes in its readings: what deviates by less than this is never one, in the
+    /// output's unit
+    #[arg(
+        long,
+        value_name = "SIZE",
+        allow_hyphen_values = true,
+        requires = "controller"
+    )]
+    pub(crate) gate: Option<f64>,
+    /// The time constant of a low-pass filter on its readings
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_hyphen_values = true,
+        requires = "controller"
+    )]
+    pub(crate) filter: Option<f64>,
     /// Its sample time, which the communication step has to be
     #[arg(
         long,

@@ -172,6 +172,20 @@ fn a_loop_and_a_library_for_arduino() {
         said["ram_bytes"]["controller"].as_u64().unwrap() > 80,
         "{said}"
     );
+    // Parts that are asked for.
+    let parts = "--gate 0.1 --filter 0.2 --measured-dt";
+    let more = json(
+        folder.path(),
+        &format!("export c spring.json -o parts --controller --dt 0.05 {gains} {parts}"),
+    );
+    assert_eq!(more["files"].as_array().unwrap().len(), 14);
+    assert_eq!(
+        (&more["control"]["gate"], &more["control"]["filter_s"]),
+        (&0.1.into(), &0.2.into())
+    );
+    let bytes = |said: &serde_json::Value| said["ram_bytes"]["controller"].as_u64().unwrap();
+    // Of a gate 18 numbers and 3 bytes, of a filter 3 numbers, and the time.
+    assert_eq!(bytes(&more), bytes(&said) + 92);
     // A loop whose model learns.
     let said = json(
         folder.path(),

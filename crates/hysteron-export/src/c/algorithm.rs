@@ -64,6 +64,42 @@ pub(super) const CONTROL: [(&str, &str); 2] = [
     ),
 ];
 
+/// The same for a control loop with a gate.
+pub(super) const GATE: [(&str, &str); 1] = [(
+    "hysteron_mcu_gate.c",
+    include_str!("../../mcu/hysteron_mcu_gate.c"),
+)];
+
+/// The same for one with a filter.
+pub(super) const FILTER: [(&str, &str); 1] = [(
+    "hysteron_mcu_filter.h",
+    include_str!("../../mcu/hysteron_mcu_filter.h"),
+)];
+
+/// The exponential that a filter and a clock need.
+pub(super) const DECAY: [(&str, &str); 2] = [
+    (
+        "hysteron_mcu_decay.h",
+        include_str!("../../mcu/hysteron_mcu_decay.h"),
+    ),
+    (
+        "hysteron_mcu_decay.c",
+        include_str!("../../mcu/hysteron_mcu_decay.c"),
+    ),
+];
+
+/// The same for a control loop around a model with stages, whose time is measured.
+pub(super) const CLOCK: [(&str, &str); 2] = [
+    (
+        "hysteron_mcu_clock.h",
+        include_str!("../../mcu/hysteron_mcu_clock.h"),
+    ),
+    (
+        "hysteron_mcu_clock.c",
+        include_str!("../../mcu/hysteron_mcu_clock.c"),
+    ),
+];
+
 /// The same for a control loop whose model learns.
 pub(super) const SHADOW: [(&str, &str); 2] = [
     (
@@ -140,9 +176,22 @@ pub(super) fn with_stages(text: &str, stages: &[&str]) -> String {
     text.replace(&line(all), &line(mask))
 }
 
+/// A text of the algorithm with these parts of a control loop alone, a bit for each.
+pub(super) fn with_parts(text: &str, parts: u8) -> String {
+    text.replace(ALL_PARTS, &format!("#define HYS_LOOP {parts}u"))
+}
+
+const ALL_PARTS: &str = "#define HYS_LOOP 7u";
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_line_of_the_parts_is_found() {
+        let (_, header) = CONTROL[0];
+        assert!(with_parts(header, 2).contains("#define HYS_LOOP 2u\n"));
+    }
 
     #[test]
     fn the_place_for_tables_in_ram_is_found() {

@@ -1,5 +1,6 @@
 //! A model in the number type of the target.
 
+use super::parts::Parts;
 use super::real::{Number, unfit};
 use super::rounding::missed;
 use super::stages::{CSampling, Staged};
@@ -110,12 +111,12 @@ impl<T: Number> Constants<T> {
     /// `learns`: for what learns on the target, the bytes of its constants beside the weights, and the
     /// numbers of its memory.
     /// `word`: the bytes of a pointer and of a size. An AVR, whose have 2, aligns nothing.
-    /// `late`: for a control loop, the drives that are under way.
+    /// `around`: for a control loop, the drives that are under way, and its parts.
     pub(super) fn memory(
         &self,
         word: usize,
         learns: Option<(usize, usize)>,
-        late: Option<usize>,
+        around: Option<(usize, Parts)>,
     ) -> CMemory {
         let aligned = |bytes: usize| match word {
             2 => bytes,
@@ -131,18 +132,20 @@ impl<T: Number> Constants<T> {
             }
             _ => 0,
         };
+        // `hys_actuator`.
+        let actuator = self.stages.as_ref().map_or(0, |staged| {
+            let lists = 1 + staged.arrays().count();
+            let numbers = 10 + RATE_NUMBERS + staged.core().behind.slopes().count();
+            aligned(aligned((3 + 2 * lists) * word) + numbers * T::BYTES + 3)
+        });
         let (stages, state) = match &self.stages {
             None => (0, operators),
             Some(staged) => (
-                {
-                    let lists = 1 + staged.arrays().count();
-                    let core = staged.core();
-                    let numbers = 10 + RATE_NUMBERS + core.behind.slopes().count();
-                    aligned(aligned((3 + 2 * lists) * word) + numbers * T::BYTES + 3)
-                } + staged
-                    .parts
-                    .as_ref()
-                    .map_or(0, |_| aligned(3 * word) + 2 * T::BYTES)
+                actuator
+                    + staged
+                        .parts
+                        .as_ref()
+                        .map_or(0, |_| aligned(3 * word) + 2 * T::BYTES)
                     + staged.numbers() * T::BYTES,
                 operators + aligned(3 * word) + (STATE_NUMBERS - 1) * T::BYTES + mixed,
             ),
@@ -169,13 +172,38 @@ impl<T: Number> Constants<T> {
                 + stages
                 + (table + start) * T::BYTES
                 + learns.map_or(0, |(bytes, _)| weights * T::BYTES + bytes)
-                + late.map_or(0, |_| aligned(2 * word + 13 * T::BYTES + 2)),
+                + around.map_or(0, |(_, parts)| {
+                    let numbers = usize::from(parts.gate) + usize::from(parts.filter);
+                    let mut bytes = 2 * word + 13 * T::BYTES + 2 + usize::from(parts.bits() > 0);
+                    if numbers > 0 {
+                        bytes = aligned(bytes) + numbers * T::BYTES;
+                    }
+                    if parts.time {
+                        bytes = if word > 2 {
+                            bytes.next_multiple_of(word)
+                        } else {
+                            bytes
+                        } + word;
+                    }
+                    let clock = match parts.clock {
+                        true => aligned(2 * word) + RATE_NUMBERS * T::BYTES,
+                        false => 0,
+                    };
+                    aligned(bytes) + clock
+                }),
             state,
             mixed,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
-            controller: late.map(|late| {
-                let numbers = (20 + late) * T::BYTES;
-                aligned(5 * word) + numbers + aligned(5)
+            controller: around.map(|(late, parts)| {
+                let gate = usize::from(parts.gate) * (18 * T::BYTES + aligned(3));
+                let filter = usize::from(parts.filter) * 3;
+                let numbers = (20 + late + filter + usize::from(parts.time)) * T::BYTES;
+                // On an AVR all constants are in RAM.
+                let model = match parts.clock && word > 2 {
+                    true => actuator,
+                    false => 0,
+                };
+                aligned(5 * word) + numbers + aligned(5) + gate + model
             }),
             adaptation: learns.map(|(_, numbers)| adaptive + numbers * T::BYTES),
         }

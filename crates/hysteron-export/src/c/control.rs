@@ -1,7 +1,10 @@
 //! The settings of a control loop around a model.
 
+use super::algorithm::{CLOCK, CONTROL};
 use super::constants::Constants;
+use super::parts::Parts;
 use super::real::{Number, unfit};
+use super::stages::Staged;
 use super::text::Beside;
 use hysteron::control::Scheme;
 use hysteron::{Error, Model, Policy, Remedy, Result, Setting, Sign};
@@ -31,8 +34,8 @@ pub(super) fn check<T: Number>(
     if dt.is_some_and(|dt| dt != scheme.interval_s) {
         return refused("model and controller have different sample times");
     }
-    if scheme.filter_s > 0.0 || scheme.gate.is_some() || scheme.inner.is_some() {
-        return refused("a filter, a gate and an inner loop are not to be had on the target");
+    if scheme.inner.is_some() {
+        return refused("an inner loop is not to be had on the target");
     }
     if scheme.commands != scheme.drives || scheme.policy != Policy::Hold {
         return refused("the commands are the drives on the target, and headings are given there");
@@ -54,7 +57,9 @@ pub(super) fn late(scheme: &Scheme, model: &Model) -> usize {
 pub(super) fn text<T: Number>(
     scheme: &Scheme,
     model: &Model,
-    (name, staged): (&str, bool),
+    name: &str,
+    staged: Option<&Staged<T>>,
+    parts: Parts,
 ) -> Result<Beside> {
     let shout = name.to_uppercase();
     let late = late(scheme, model);
@@ -65,7 +70,7 @@ pub(super) fn text<T: Number>(
     });
     let (low, high) = scheme.drives;
     let (off, on) = model.output_range();
-    let numbers = [
+    let mut numbers = vec![
         ("dt", scheme.interval_s),
         ("gain", gains.gain),
         ("integral_s", gains.integral_s),
@@ -83,13 +88,27 @@ pub(super) fn text<T: Number>(
         ("lost_s", scheme.safety.lost_s.unwrap_or(0.0)),
         ("stuck_s", scheme.safety.stuck_s.unwrap_or(0.0)),
     ];
-    let mut defined = format!(
+    numbers.extend(scheme.gate.map(|gate| ("gate", gate)));
+    numbers.extend(parts.filter.then_some(("filter_s", scheme.filter_s)));
+    let bits = parts.bits();
+    let times = staged
+        .filter(|_| parts.clock)
+        .map(|staged| times(name, staged));
+    let mut defined = times.unwrap_or_default();
+    let _ = write!(
+        defined,
         "\nconst hys_control {name}_control = {{\n    .model = &{},\n    .late = {late},\n",
         match staged {
-            true => "hys_staged_in_loop",
-            false => "hys_plain_in_loop",
+            Some(_) => "hys_staged_in_loop",
+            None => "hys_plain_in_loop",
         }
     );
+    if parts.clock {
+        defined += "    .clock = &times.clock,\n";
+    }
+    if bits > 0 {
+        let _ = writeln!(defined, "    .has = {bits},");
+    }
     for (field, number) in numbers {
         let number =
             T::nearest(number).ok_or_else(|| unfit(&format!("`{field}` of {number:e}")))?;
@@ -101,10 +120,35 @@ pub(super) fn text<T: Number>(
         usize::from(scheme.pid.is_some()),
         usize::from(model.sign() == Sign::Negative),
     );
+    // A model that was exported later, without these parts, took them out of the folder.
+    let check = format!(
+        "#if (HYS_LOOP & {bits}u) != {bits}u
+#error \"{name}: export all models of this folder with the same parts of a loop\"
+#endif
+"
+    );
     Ok(Beside {
-        include: Some("hysteron_mcu_control.h"),
-        sizes: format!("#define {shout}_LATE {late}\n"),
+        include: Some(match parts.clock {
+            true => CLOCK[0].0,
+            false => CONTROL[0].0,
+        }),
+        sizes: match bits {
+            0 => format!("#define {shout}_LATE {late}\n"),
+            _ => format!("#define {shout}_LATE {late}\n{check}"),
+        },
         declared: format!("extern const hys_control {name}_control;\n"),
         defined,
     })
+}
+
+/// Defines the time constants of a model whose time is measured.
+fn times<T: Number>(name: &str, staged: &Staged<T>) -> String {
+    let times = staged.times().map(|time| time.literal());
+    let [heating, cooling, behind @ ..] = times;
+    let behind = behind.join(", ");
+    format!(
+        "\nstatic const hys_times times = {{\n    .clock = {{hys_clock_pass}},\n    \
+         .model = &{name},\n    .heating = {heating},\n    .cooling = {cooling},\n    \
+         .behind = {{{behind}}}\n}};\n"
+    )
 }

@@ -95,9 +95,11 @@ pub(super) fn actuator<T: Number>(
             high.literal()
         );
     }
+    // Measured time changes its factors.
+    let kept = if staged.measured { "" } else { "const " };
     let _ = write!(
         text,
-        "\nconst hys_actuator {name} = {{\n    .operators = &operators,\n"
+        "\n{kept}hys_actuator {name} = {{\n    .operators = &operators,\n"
     );
     for (array, numbers) in &arrays {
         let value = if numbers.is_empty() { "NULL" } else { array };

@@ -2,7 +2,7 @@
 
 use super::real::{Number, unfit};
 use hysteron::{Error, Model, Remedy, Result, Setting, StageConstants};
-use hysteron_core::{Constant, MAX_PARTS, Plane, RATE_NUMBERS, Real, Stages, table_len};
+use hysteron_core::{Constant, MAX_CREEP, MAX_PARTS, Plane, RATE_NUMBERS, Real, Stages, table_len};
 
 /// How a model with stages runs on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -13,6 +13,9 @@ pub struct CSampling {
     /// Lowest and highest drive that the inverse may give; by default [`Model::drive_range`]. Only
     /// for a model with stages.
     pub drive: Option<(f64, f64)>,
+    /// Whether the time of each sample is measured on the target and given to
+    /// `hys_controller_step_after`. Only for a control loop, and for a model without a ring.
+    pub measured: bool,
 }
 
 /// Weights that depend on the load: the constants of `hys_parts`.
@@ -29,6 +32,8 @@ pub(super) struct Parts<T> {
 /// The constants of `hys_actuator`.
 pub(super) struct Staged<T> {
     pub(super) dt: Option<f64>,
+    /// Whether its factors are those of a measured time.
+    pub(super) measured: bool,
     pub(super) constants: StageConstants<T>,
     /// Those of [`hysteron_core::Rates::to_numbers`].
     pub(super) rates: [T; RATE_NUMBERS],
@@ -79,6 +84,7 @@ impl<T: Number> Staged<T> {
         let of_stage = |constant: &Constant, value| number(&format!("`{}`", constant.name), value);
         let mut staged = Self {
             dt: sampling.dt,
+            measured: sampling.measured && model.is_timed(),
             constants: all.map(of_stage)?,
             rates: [T::ZERO; RATE_NUMBERS],
             gain: T::ONE,
@@ -137,6 +143,22 @@ impl<T: Number> Staged<T> {
             .iter()
             .filter(move |(constant, _)| !single(constant.name) && !constant.range.is_timed())
             .map(|(constant, numbers)| (constant.name, numbers))
+    }
+
+    /// The time constant of each factor, in the order of the rates; zero where there is none.
+    pub(super) fn times(&self) -> [T; RATE_NUMBERS] {
+        let mut times = [T::ZERO; RATE_NUMBERS];
+        let places = [
+            ("tau_heating", 0),
+            ("tau_cooling", 1),
+            ("creep_taus", 2),
+            ("lag", 2 + MAX_CREEP),
+        ];
+        for (name, first) in places {
+            let own = self.constants.get(name);
+            times[first..][..own.len()].copy_from_slice(own);
+        }
+        times
     }
 
     /// How many numbers the arrays of the constants have, without the start.
@@ -217,6 +239,11 @@ fn check(model: &Model, sampling: &CSampling, bare: bool) -> Result<()> {
             return refused(what, "give another one with {}", "dt");
         }
         _ => {}
+    }
+    let rings = !model.constants().get("ring_frequency").is_empty();
+    if sampling.measured && rings {
+        let what = "a ring has constants for one sample time alone on the target".into();
+        return refused(what, "leave {} out", "measured-dt");
     }
     match sampling.drive {
         Some(_) if bare => {

@@ -150,7 +150,7 @@ pub(super) fn header<T: Number>(
 #ifdef __cplusplus
 extern \"C\" {{
 #endif
-extern const {kind} {name};
+extern {kept}{kind} {name};
 {weights}#ifdef __cplusplus
 }}
 #endif
@@ -158,6 +158,10 @@ extern const {kind} {name};
 #endif
 ",
         version = env!("CARGO_PKG_VERSION"),
+        kept = match staged.is_some_and(|staged| staged.measured) {
+            true => "",
+            false => "const ",
+        },
         turns = turn_capacity(*levels),
     )
 }

@@ -12,9 +12,12 @@ pub(super) fn check(model: &Model, scheme: &Scheme) -> Result<()> {
         let what = "the controller has no reading of a load";
         return Err(Error::Export(what.into()).remedied(remedy));
     }
-    let without = scheme.gate.is_none() && scheme.inner.is_none() && scheme.stuck_s.is_none();
-    if scheme.filter_s > 0.0 || !without || scheme.commands != scheme.drives {
-        return refused("a filter, a gate and an inner loop are not to be had in the block");
+    let without = scheme.inner.is_none() && scheme.stuck_s.is_none();
+    if !without || scheme.commands != scheme.drives {
+        return refused("an inner loop and readings that repeat are not to be had in the block");
+    }
+    if scheme.gate == Some(0.0) {
+        return refused("the gate of the block has to be above zero: 0 is that there is none");
     }
     if scheme
         .delay
@@ -33,7 +36,7 @@ pub(super) fn check(model: &Model, scheme: &Scheme) -> Result<()> {
 pub(super) type Parameter = (&'static str, f64, &'static str);
 
 /// The settings as parameters, in the order of the text.
-pub(super) fn parameters(scheme: &Scheme) -> [Parameter; 8] {
+pub(super) fn parameters(scheme: &Scheme) -> [Parameter; 10] {
     let gains = scheme.pid.unwrap_or(Gains {
         gain: 0.0,
         integral_s: 0.0,
@@ -73,6 +76,16 @@ pub(super) fn parameters(scheme: &Scheme) -> [Parameter; 8] {
             "stuck_s",
             time(scheme.safety.stuck_s),
             "the same for a reading that stands still where it has to move",
+        ),
+        (
+            "gate",
+            scheme.gate.unwrap_or(0.0),
+            "a reading that deviates by less is never a spike; 0 for no gate",
+        ),
+        (
+            "filter_s",
+            scheme.filter_s,
+            "time constant of a low-pass filter on the readings; 0 for none",
         ),
     ]
 }

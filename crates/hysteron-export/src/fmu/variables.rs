@@ -125,7 +125,7 @@ pub(super) fn all(model: &Model, block: Block<'_>) -> Result<Vec<Variable>> {
 }
 
 /// The flags of a controller, added.
-const FLAGS: (Option<&str>, Option<&str>) = (Some("0"), Some("31"));
+const FLAGS: (Option<&str>, Option<&str>) = (Some("0"), Some("95"));
 
 /// Those of a controller.
 fn controller(model: &Model, scheme: &Scheme, wanted: &Quantity) -> Result<Vec<Variable>> {
@@ -155,7 +155,7 @@ fn controller(model: &Model, scheme: &Scheme, wanted: &Quantity) -> Result<Vec<V
             "status",
             FLAGS,
             "flags, added: 1 the drive is at a limit; 2 out of reach; 4 no reading; 8 the reading \
-             stands still; 16 given up, the drive is the safe one",
+             stands still; 16 given up, the drive is the safe one; 64 an outlier",
         ),
         heading(),
         tolerance(&model.output, scheme.tolerance),

@@ -56,6 +56,7 @@ fn driven(
     let sampling = CSampling {
         dt: model.is_timed().then_some(0.05),
         drive: None,
+        ..CSampling::default()
     };
     let target = Destination::keeping_foreign(folder, false);
     arduino(model, target, &options, &sampling, &scheme)

@@ -73,6 +73,7 @@ fn export(folder: &Path, real: CReal) {
     let sampling = CSampling {
         dt: Some(0.05),
         drive: Some((0.0, 1.0)),
+        ..CSampling::default()
     };
     let gains = Gains {
         gain: 0.05,

@@ -20,11 +20,37 @@ struct Loop {
     scheme: Scheme,
 }
 
-/// Loops around models with random stages, without loads.
-fn loops(seed: u64) -> Vec<Loop> {
+/// What a loop may have beside the feedback.
+#[derive(Clone, Copy, Debug)]
+struct Parts {
+    gate: bool,
+    filter: bool,
+    time: bool,
+}
+
+impl Parts {
+    const ALL: Self = Self::of(7);
+
+    const fn of(bits: u64) -> Self {
+        Self {
+            gate: bits & 1 > 0,
+            filter: bits & 2 > 0,
+            time: bits & 4 > 0,
+        }
+    }
+}
+
+fn rings(model: &Model) -> bool {
+    !model.constants().get("ring_frequency").is_empty()
+}
+
+/// Loops around models with random stages, without loads. Each has some of the parts, and the last
+/// one all of them: the code in a folder is that of the last one.
+fn loops(seed: u64, parts: Parts) -> Vec<Loop> {
     let mut rng = walks::rng(seed);
     let mut loops = Vec::new();
-    for levels in [2, 3, 5, 8, 20] {
+    let sizes = [2, 3, 5, 8, 20];
+    for levels in sizes {
         for operator in walks::OPERATORS {
             for every in [false, true] {
                 let found = std::iter::repeat_with(|| {
@@ -34,22 +60,35 @@ fn loops(seed: u64) -> Vec<Loop> {
                     }
                     case
                 });
+                let last = loops.len() + 1 == 2 * sizes.len() * walks::OPERATORS.len();
                 let fits = |case: &Case| {
-                    case.model.load.is_none()
+                    !(last && rings(&case.model))
+                        && case.model.load.is_none()
                         && case.model.inverse().is_ok()
                         && case.sampling.drive.is_none()
                         && case.model.is_plain() != every
                         && case.is_kept(CReal::Float)
                 };
                 let case = found.filter(fits).take(1).next().unwrap();
-                loops.push(around(&mut rng, case));
+                loops.push(around(&mut rng, case, parts));
             }
         }
+    }
+    // As if they were of folders of their own.
+    let count = loops.len();
+    for each in &mut loops[..count - 1] {
+        if rng.random_bool(0.2) {
+            each.scheme.gate = None;
+        }
+        if rng.random_bool(0.2) {
+            each.scheme.filter_s = 0.0;
+        }
+        each.sampling.measured &= !rng.random_bool(0.2);
     }
     loops
 }
 
-fn around(rng: &mut StdRng, case: Case) -> Loop {
+fn around(rng: &mut StdRng, case: Case, parts: Parts) -> Loop {
     let dt = case.sampling.dt.unwrap_or(0.01);
     let (off, on) = case.model.output_range();
     let (low, high) = case.drives;
@@ -75,6 +114,11 @@ fn around(rng: &mut StdRng, case: Case) -> Loop {
         pid: coin(rng).then_some(gains),
         slew: some(rng, slew),
         stuck_s: some(rng, 4.0 * dt),
+        gate: parts.gate.then_some(0.02 * (on - off).abs()),
+        filter_s: match parts.filter {
+            true => dt * rng.random_range(0.2..20.0),
+            false => 0.0,
+        },
         safety: Safety {
             lost_s: rng.random_bool(0.3).then_some(6.0 * dt),
             stuck_s: rng.random_bool(0.3).then_some(5.0 * dt),
@@ -82,9 +126,13 @@ fn around(rng: &mut StdRng, case: Case) -> Loop {
         delay: rng.random_bool(0.7).then(|| rng.random_range(0..6)),
         ..Scheme::new(dt, case.drives)
     };
+    let measured = parts.time && !rings(&case.model);
     Loop {
         model: case.model,
-        sampling: case.sampling,
+        sampling: CSampling {
+            measured,
+            ..case.sampling
+        },
         scheme,
     }
 }
@@ -145,6 +193,8 @@ enum Event {
         heading: i32,
         noise: f64,
         reading: Read,
+        /// The measured time.
+        dt: Option<f64>,
     },
 }
 
@@ -165,6 +215,7 @@ fn events(rng: &mut StdRng, each: &Loop, count: usize) -> Vec<Event> {
     );
     let (bottom, top) = each.scheme.drives;
     let mut events = Vec::new();
+    let spikes = rng.random_bool(0.5);
     let mut reference = rng.random_range(low..high);
     while events.len() < count {
         if rng.random_bool(0.1) {
@@ -190,17 +241,26 @@ fn events(rng: &mut StdRng, each: &Loop, count: usize) -> Vec<Event> {
             } else {
                 reference
             };
-            let noise = if noise > 0.0 {
-                rng.random_range(-noise..noise)
-            } else {
-                0.0
+            let noise = match rng.random_range(0..20) {
+                0 if spikes => rng.random_range(-2.0..2.0) * (high - low),
+                _ if noise > 0.0 => rng.random_range(-noise..noise),
+                _ => 0.0,
             };
+            let dt = each.sampling.measured.then(|| {
+                let times = match rng.random_range(0..4) {
+                    0 => 1.0,
+                    1 => rng.random_range(0.01..30.0),
+                    _ => rng.random_range(0.5..2.0),
+                };
+                times * each.scheme.interval_s
+            });
             events.push(Event::Sample {
                 reference,
                 ahead,
                 heading,
                 noise,
                 reading,
+                dt,
             });
             reference += slope;
         }
@@ -228,7 +288,7 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
     };
     let mut controller = Controller::new(scheme).unwrap();
     // The plant is another one than the model: it drifts and has another gain.
-    let (mut state, dt) = (model.start(), Some(each.scheme.interval_s));
+    let (mut state, interval) = (model.start(), each.scheme.interval_s);
     let (mut output, mut shown, mut held) = (model.output_range().0, 0.0, 0.0);
     let mut drive = None;
     let (mut commands, mut expected) = (format!("m {n} 1\n"), String::from("m 0\n"));
@@ -246,11 +306,14 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
                 heading,
                 noise,
                 reading,
+                dt,
             } => {
+                let told = dt.unwrap_or(f64::NAN).hex();
+                let dt = dt.unwrap_or(interval);
                 if let Some(input) = drive {
                     let sample = Sample {
                         input,
-                        dt,
+                        dt: Some(dt),
                         load: None,
                     };
                     output = model.step(&mut state, sample).unwrap().output;
@@ -268,7 +331,7 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
                 let ahead = if due == 0 { reference } else { ahead };
                 writeln!(
                     commands,
-                    "s {} {} {heading} {}",
+                    "s {} {} {heading} {} {told}",
                     reference.hex(),
                     ahead.hex(),
                     shown.hex()
@@ -287,7 +350,7 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
                     input: None,
                 };
                 let action = controller
-                    .step_ahead(target, &vec![ahead; due], reading)
+                    .step_after(dt, target, &vec![ahead; due], reading)
                     .unwrap();
                 drive = Some(action.drive);
                 let flags = [
@@ -296,8 +359,10 @@ fn script(n: usize, each: &Loop, events: &[Event]) -> (String, String) {
                     action.status.sensor_fault,
                     action.status.stuck,
                     action.status.safe,
+                    false,
+                    action.status.rejected,
                 ];
-                let status: u32 = (0..5).map(|n| u32::from(flags[n]) << n).sum();
+                let status: u32 = (0..7).map(|n| u32::from(flags[n]) << n).sum();
                 let (drive, prediction) = (hex(action.drive), hex(action.prediction));
                 writeln!(expected, "s 0 {drive} {prediction} {status}").unwrap();
             }
@@ -318,7 +383,8 @@ fn compare(program: &mut Command, loops: &[Loop], seed: u64, count: usize, what:
     let [commands, expected] = all;
     same(&commands, &expected, &answers(program, &commands), what);
     // Every flag is among the answers.
-    for flag in [1, 2, 4, 8, 16] {
+    let gated = loops.iter().any(|each| each.scheme.gate.is_some());
+    for flag in [1, 2, 4, 8, 16].into_iter().chain(gated.then_some(64)) {
         let has = |line: &str| {
             let status = line
                 .strip_prefix("s 0 ")
@@ -334,15 +400,15 @@ fn random_loops_have_the_same_drives() {
     if !has("cc") {
         return;
     }
-    for seed in 0..4 {
-        let loops = loops(seed);
+    for seed in 0..8 {
+        let loops = loops(seed, Parts::of(seed));
         let exported = export(&loops, CReal::Double);
         let program = exported.compile("cc", &["-O2"], "control.c");
         compare(
             &mut Command::new(program),
             &loops,
             seed,
-            1500,
+            800,
             &format!("seed {seed}"),
         );
     }
@@ -355,7 +421,7 @@ fn compilers_and_sanitizers_change_no_drive() {
         "-fsanitize=address,undefined,float-cast-overflow",
         "-fno-sanitize-recover=all",
     ];
-    let loops = loops(9);
+    let loops = loops(9, Parts::ALL);
     let exported = export(&loops, CReal::Double);
     let plain = ["-O0", "-Os", "-O3"].map(|level| vec![level]);
     for flags in plain.into_iter().chain([SANITIZE.to_vec()]) {

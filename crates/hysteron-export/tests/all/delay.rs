@@ -76,6 +76,7 @@ fn inputs_act_after_the_dead_time() {
         let sampling = CSampling {
             dt: Some(DT),
             drive: None,
+            ..CSampling::default()
         };
         compare(&body, &sampling, &["-O2", "-DSTAGED"]);
     }

@@ -79,6 +79,7 @@ fn the_actuator_on_the_page() {
     let sampling = CSampling {
         dt: Some(0.01),
         drive: Some((0.0, 1.0)),
+        ..CSampling::default()
     };
     c_sampled(&model, folder.path(), &options, &sampling).unwrap();
     std::fs::write(folder.path().join("main.c"), program).unwrap();
@@ -124,6 +125,7 @@ fn the_loop_on_the_page() {
     let sampling = CSampling {
         dt: Some(0.01),
         drive: None,
+        ..CSampling::default()
     };
     let scheme = Scheme::new(0.01, (0.0, 1.0));
     let made = c_controlled(&model, folder.path(), &options, &sampling, &scheme).unwrap();

@@ -157,6 +157,7 @@ fn a_body_that_float_does_not_follow_is_refused_and_double_is_advised() {
             CSampling {
                 dt: Some(dt),
                 drive: None,
+                ..CSampling::default()
             },
         )
     };

@@ -311,10 +311,12 @@ fn what_does_not_belong_together_is_refused() {
     let at = |dt: f64| CSampling {
         dt: Some(dt),
         drive: None,
+        ..CSampling::default()
     };
     let driven = |low: f64, high: f64| CSampling {
         dt: None,
         drive: Some((low, high)),
+        ..CSampling::default()
     };
     let spaced = plain()
         .with_spacing(vec![0.0, 1.0, 2.0, 4.0, 8.0, 9.0])

@@ -75,7 +75,11 @@ fn files() -> Vec<File> {
         let runs = file["runs"].as_array().unwrap().iter();
         let fixed: Vec<&Value> = runs.filter(|run| step(run).is_some()).collect();
         let dt = step(fixed[0]).filter(|_| model.is_timed());
-        let sampling = CSampling { dt, drive: None };
+        let sampling = CSampling {
+            dt,
+            drive: None,
+            ..CSampling::default()
+        };
         files.push(File {
             name: path.file_stem().unwrap().to_str().unwrap().to_owned(),
             case: Case::of(model, sampling),

@@ -187,6 +187,7 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
     let sampling = CSampling {
         dt: model.is_timed().then_some(dt),
         drive: limited.then_some(drives),
+        ..CSampling::default()
     };
     Case {
         model,

@@ -50,6 +50,20 @@ static void print(hys_real x)
     }
 }
 
+/* A sample, after a measured time where there is one. */
+static int stepped(hys_real dt, hys_real reference, hys_real ahead, int heading, hys_real reading,
+                   hys_action *action)
+{
+#if (HYS_LOOP & HYS_HAS_TIME) != 0u
+    if (dt == dt) {
+        return hys_controller_step_after(&controller, dt, reference, ahead, heading, reading, action);
+    }
+#else
+    (void)dt;
+#endif
+    return hys_controller_step(&controller, reference, ahead, heading, reading, action);
+}
+
 int main(void)
 {
     static char line[1 << 12];
@@ -57,7 +71,7 @@ int main(void)
         const char *command = strtok(line, " \n");
         hys_action action = {0, 0, 0};
         const loop *self;
-        hys_real reference, ahead, reading;
+        hys_real reference, ahead, reading, dt;
         int code, heading;
         switch (command == NULL ? ' ' : command[0]) {
         case 'm':
@@ -80,7 +94,8 @@ int main(void)
             ahead = number(word());
             heading = atoi(word());
             reading = number(word());
-            code = hys_controller_step(&controller, reference, ahead, heading, reading, &action);
+            dt = number(word()); /* NaN where none is told */
+            code = stepped(dt, reference, ahead, heading, reading, &action);
             printf("s %d", code);
             print(action.drive);
             print(action.prediction);

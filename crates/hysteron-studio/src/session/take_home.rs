@@ -181,6 +181,7 @@ impl Session {
         let sampling = CSampling {
             dt: fitted.dt.filter(|_| fitted.model.is_timed()),
             drive: None,
+            ..CSampling::default()
         };
         let (made, texts) = hysteron_export::c_texts(&fitted.model, &options, &sampling)?;
         let mut files: Vec<(String, String)> = made

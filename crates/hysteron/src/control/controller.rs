@@ -1,12 +1,11 @@
 //! One controller for all schemes: inverse feedforward, PID feedback, or both, with an optional
 //! inner loop around the input.
 
-use super::gate::Gate;
 use super::sensor::{Sensed, Sensor};
 use super::{Gains, LoopStatus, Reading, Scheme};
 use crate::error::{Error, Result};
 use crate::model::{Policy, UnderWay};
-use hysteron_core::control::{Cause, Pid, Silence, Standstill, clamp};
+use hysteron_core::control::{Cause, Gate, Pid, Silence, Standstill, clamp};
 use hysteron_core::{Direction, Outcome};
 
 /// Samples within which a difference of the feedforward fades.

@@ -5,10 +5,11 @@
 //! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
 //! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` has the
-//! gains of the feedback and `tuning` finds them; `sensor` checks each sensor, `gate` holds back
-//! spikes; `trust` chooses between a learner and the model it began from; `status` has the flags;
-//! `device`, `run` and `trace` connect the loop to a device and record it. The feedback itself, and
-//! what notices that a reading stands still or is missing, are in [`hysteron_core::control`].
+//! gains of the feedback and `tuning` finds them; `sensor` checks each sensor; `trust` chooses
+//! between a learner and the model it began from; `status` has the flags; `device`, `run` and `trace`
+//! connect the loop to a device and record it. The feedback itself, the gate against spikes, the
+//! filter, and what notices that a reading stands still or is missing, are in
+//! [`hysteron_core::control`].
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
@@ -52,7 +53,6 @@
 mod compensator;
 mod controller;
 mod device;
-mod gate;
 mod pid;
 mod run;
 mod scheme;

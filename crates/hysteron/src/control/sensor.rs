@@ -1,5 +1,7 @@
 //! Filters a sensor's readings, and detects readings that are missing or stuck.
 
+use hysteron_core::control::LowPass;
+
 /// What a sensor's reading means at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sensed {
@@ -32,11 +34,10 @@ impl Sensed {
 /// loop would integrate an error that does not exist, and a model would learn from it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sensor {
-    filter_s: f64,
+    filter: LowPass,
     /// Longest time without a new reading that a working sensor can give, s; `None` where equal
     /// readings are valid.
     patience: Option<f64>,
-    filtered: f64,
     last: f64,
     /// Time since the last new reading, s.
     gap: f64,
@@ -50,9 +51,8 @@ impl Sensor {
     /// is taken as broken.
     pub(super) fn new(filter_s: f64, stuck_s: Option<f64>) -> Self {
         Self {
-            filter_s,
+            filter: LowPass::new(filter_s),
             patience: stuck_s.map(|time| time * (1.0 - ROUNDING)),
-            filtered: f64::NAN,
             last: f64::NAN,
             gap: 0.0,
         }
@@ -79,15 +79,7 @@ impl Sensor {
     pub(super) fn filter(&mut self, value: f64, dt: f64) -> f64 {
         let passed = self.gap + dt;
         self.gap = 0.0;
-        let kept = match self.filtered.is_nan() || self.filter_s <= 0.0 {
-            true => 0.0,
-            false => (-passed / self.filter_s).exp(),
-        };
-        self.filtered = match kept > 0.0 {
-            true => kept * self.filtered + (1.0 - kept) * value,
-            false => value,
-        };
-        self.filtered
+        self.filter.pass(value, passed)
     }
 }
 

@@ -12,8 +12,15 @@ const BURST: u32 = 3;
 /// the median of the last deviations from there is the usual one. A reading is held back where it is
 /// far from there, and from where the model expects it. A plant that jumps is believed at the third
 /// reading.
+///
+/// ```
+/// use hysteron_core::control::Gate;
+/// let mut gate = Gate::new(0.1);
+/// let readings = [1.0, 1.05, 9.0, 1.1]; // one of them is wild
+/// assert_eq!(readings.map(|y| gate.passes(y, || 0.0)), [true, true, false, true]);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Gate {
+pub struct Gate {
     /// Deviations up to this are never held back.
     least: f64,
     /// The last reading that was believed, and the change from sample to sample that led to it.
@@ -21,30 +28,38 @@ pub(super) struct Gate {
     slope: f64,
     /// Samples since then.
     steps: f64,
-    /// Sizes of the last deviations.
-    deviations: Vec<f64>,
+    /// Sizes of the last deviations, how many are known, and where the next one goes.
+    deviations: [f64; REMEMBERED],
+    known: usize,
     next: usize,
     /// Readings beyond the gate in a row, and whether they are above it.
     beyond: (u32, bool),
 }
 
 impl Gate {
-    /// A gate that never holds back what deviates by `least`, in the output's unit.
-    pub(super) fn new(least: f64) -> Self {
+    /// A gate that never holds back what deviates by `least`, in the output's unit, zero or above.
+    #[must_use]
+    pub fn new(least: f64) -> Self {
         Self {
             least,
             believed: f64::NAN,
             slope: 0.0,
             steps: 0.0,
-            deviations: Vec::with_capacity(REMEMBERED),
+            deviations: [0.0; REMEMBERED],
+            known: 0,
             next: 0,
             beyond: (0, false),
         }
     }
 
+    /// Changes the size that is never held back.
+    pub fn set(&mut self, least: f64) {
+        self.least = least;
+    }
+
     /// Whether a finite `reading` is believed. `expected` is asked only where it is far from where
     /// the last ones lead: by how much the output changes, in the model's opinion.
-    pub(super) fn passes(&mut self, reading: f64, expected: impl FnOnce() -> f64) -> bool {
+    pub fn passes(&mut self, reading: f64, expected: impl FnOnce() -> f64) -> bool {
         if self.believed.is_nan() {
             self.believed = reading;
             return true;
@@ -74,8 +89,9 @@ impl Gate {
 
     /// How far a reading may be from where the last ones lead.
     fn width(&self) -> f64 {
-        let mut sizes = self.deviations.clone();
-        sizes.sort_by(f64::total_cmp);
+        let mut sizes = self.deviations;
+        let sizes = &mut sizes[..self.known];
+        sizes.sort_unstable_by(f64::total_cmp);
         // While few are known, the largest may be the usual one.
         let usual = match sizes.len() < REMEMBERED / 2 {
             true => sizes.last(),
@@ -85,10 +101,8 @@ impl Gate {
     }
 
     fn remember(&mut self, deviation: f64) {
-        match self.deviations.get_mut(self.next) {
-            Some(oldest) => *oldest = deviation,
-            None => self.deviations.push(deviation),
-        }
+        self.deviations[self.next] = deviation;
+        self.known = REMEMBERED.min(self.known + 1);
         self.next = (self.next + 1) % REMEMBERED;
     }
 }
