@@ -134,7 +134,7 @@ impl Session {
             Request::Cancel { job } => {
                 // One that waits would stay until its turn.
                 let running = self.running.remove(&job);
-                let running.ok_or_else(|| Fault::gone("work", job))?;
+                let running = running.ok_or_else(|| Fault::gone("work", job))?;
                 running.watch.cancel();
             }
             Request::Forget { fit } => {
