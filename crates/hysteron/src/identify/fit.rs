@@ -395,11 +395,12 @@ impl<'a> Fit<'a> {
             return Ok((at_once, delay));
         }
         let late = self.acting(&delay.of_recordings(recordings))?;
-        // What was taken for a ring or a lag has to be the better one: undoing a dead time does not
-        // multiply noise.
+        // What was taken for a ring or a lag has to be the better one, and to follow what was fitted
+        // no worse: undoing a dead time does not multiply noise.
         let is_timed = |model: &Model| model.without_body().is_timed();
+        let error = |model: &Model| model.fit.as_ref().map_or(f64::INFINITY, |fit| fit.rmse);
         let is_late = match is_timed(&at_once) && !is_timed(&late) {
-            true => !is_worth(&at_once, &late),
+            true => error(&late) < error(&at_once) && !is_worth(&at_once, &late),
             false => is_worth(&late, &at_once),
         };
         Ok(match is_late {
