@@ -1,6 +1,7 @@
 //! How far a model moved while it learned.
 
-use super::{ROUNDING, ShiftFound};
+use super::ShiftFound;
+use super::learned::ROUNDING;
 use crate::model::Model;
 use hysteron_core::operators;
 use serde::Serialize;

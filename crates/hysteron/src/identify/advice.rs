@@ -181,9 +181,10 @@ impl Advice {
                     Setting::word("solver", "ols"),
                 ],
             ),
-            Self::FalseReversals { .. } => {
-                Remedy::new("use {}, which removes them", [Setting::on("prepare")])
-            }
+            Self::FalseReversals { .. } => Remedy::new(
+                "use {}, which removes them if that helps",
+                [Setting::on("prepare")],
+            ),
             Self::Spikes { .. } => Remedy::new(
                 "use {}, which replaces them if that helps",
                 [Setting::on("prepare")],

@@ -1,0 +1,250 @@
+//! What an estimator made of recordings, compared with the model left alone.
+
+use super::{
+    AdaptOptions, Adapted, Compared, Drift, EstimatorOptions, OutcomeCounts, ShiftFound, Stuck,
+    no_samples,
+};
+use crate::error::Result;
+use crate::model::{FitSummary, Model};
+use crate::recording::{Origin, Recording};
+use crate::series::{Errors, mean_and_deviation};
+use hysteron_core::{Adaptation, Learning, Method, Outcome};
+use serde_json::json;
+use std::ops::Range;
+
+/// Differences below this share are rounding, because two ways to sum have different orders.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// [`Adapted::worse`].
+fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
+    match late.map(|late| late.loss(range)) {
+        Some(loss) => loss > ROUNDING || changed && loss >= -ROUNDING,
+        // Nothing says that it is better.
+        None => changed,
+    }
+}
+
+/// Whether the axis of the `offline` model has moved.
+fn shifted(found: Option<&ShiftFound>, offline: &Model) -> bool {
+    let plane = offline.plane();
+    let least = ROUNDING * (plane.max() - plane.min());
+    found.is_some_and(|found| found.shift.abs() > least)
+}
+
+/// What an estimator made of recordings.
+pub(super) struct Learned {
+    pub(super) offline: Model,
+    pub(super) last: Model,
+    pub(super) learned: Vec<Learning<f64>>,
+    /// The outputs of the model left alone.
+    pub(super) fixed: Vec<f64>,
+    /// The outputs of the last model, run again from the start.
+    pub(super) again: Vec<f64>,
+    pub(super) probation: usize,
+    /// How many of the last samples have an output that seems to stand still.
+    pub(super) still: usize,
+    /// The samples over which the output was held.
+    pub(super) held: Vec<Range<usize>>,
+    pub(super) shares: Vec<(&'static str, f64)>,
+    pub(super) shift: Option<ShiftFound>,
+    pub(super) options: EstimatorOptions,
+}
+
+impl Learned {
+    /// Lets all outputs pass the stages behind the operators of `model`.
+    pub(super) fn pass(&mut self, model: &Model, recordings: &[Recording]) {
+        let learned = self.learned.iter().map(|learning| learning.output);
+        let learned: Vec<f64> = learned.collect();
+        for (learning, output) in self
+            .learned
+            .iter_mut()
+            .zip(model.behind_operators(recordings, &learned))
+        {
+            learning.output = output;
+        }
+        self.fixed = model.behind_operators(recordings, &self.fixed);
+        self.again = model.behind_operators(recordings, &self.again);
+    }
+
+    /// Compares it with the model left alone. `joined` are the recordings one after the other.
+    pub(super) fn judged(self, joined: &Recording, options: &AdaptOptions) -> Result<Adapted> {
+        let Self {
+            offline,
+            mut last,
+            mut learned,
+            fixed,
+            again,
+            ..
+        } = self;
+        let count = joined.len();
+        let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
+        for learning in &mut learned[count - self.still..] {
+            learning.outcome = Outcome::OutputStuck;
+        }
+        let outcomes = learned.iter().map(|learning| learning.outcome);
+        let outcomes: Vec<Outcome> = outcomes.collect();
+        let stuck = Stuck::all(&outcomes, joined, &fixed, self.still, &self.held);
+        for n in self.held.iter().cloned().flatten() {
+            learned[n].outcome = Outcome::OutputStuck;
+        }
+        let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
+        let counts = OutcomeCounts::of(&learned);
+        let beside_fixed = |outputs: &[f64], which: &dyn Fn(usize) -> bool| {
+            Some(Compared {
+                adapting: Errors::between(&joined.output, outputs, which)?,
+                fixed: Errors::between(&joined.output, &fixed, which)?,
+            })
+        };
+        let compare = |which: &dyn Fn(usize) -> bool| beside_fixed(&output_model, which);
+        let whole = compare(&|_| true).ok_or_else(no_samples)?;
+        let third = |k: usize| k * count / 3..(k + 1) * count / 3;
+        let thirds = (0..3)
+            .map(|k| compare(&|n| third(k).contains(&n)))
+            .collect::<Option<_>>()
+            .unwrap_or_default();
+        let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
+        let alive = |n: &usize| stuck.iter().all(|stuck| !stuck.samples.contains(n));
+        let alive: Vec<usize> = (0..count).filter(alive).collect();
+        let last_third = &alive[2 * alive.len() / 3..];
+        let is_late = |n: usize| last_third.binary_search(&n).is_ok() && judges(n);
+        let late = compare(&is_late);
+        let again_late = beside_fixed(&again, &is_late);
+        let late_outputs = (0..count).filter(|n| is_late(*n)).map(|n| joined.output[n]);
+        let (_, late_spread) = mean_and_deviation(&late_outputs.collect::<Vec<_>>());
+        let again = Errors::between(&joined.output, &again, |_| true).ok_or_else(no_samples)?;
+        last.fit = Some(summary(
+            &last,
+            &offline,
+            joined,
+            options,
+            self.options.described(),
+            (&again, counts),
+        ));
+        let drift = Drift::between(&offline, &last, self.shift.as_ref());
+        let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
+        // A load goes on moving: its last shift is not that of the samples before.
+        let stays = self.shift.is_none();
+        Ok(Adapted {
+            worse: is_worse(late.as_ref(), changed, offline.output_range())
+                || stays && again_late.is_some_and(|again| again.is_harm(late_spread)),
+            drift,
+            stuck,
+            model: last,
+            probation: self.probation,
+            output_model,
+            outcomes,
+            counts,
+            whole,
+            thirds,
+            late,
+            again,
+            again_late,
+            late_spread,
+            shares: self.shares,
+            shift: self.shift,
+            options: self.options,
+        })
+    }
+}
+
+/// The summary for the file of the adapted model.
+fn summary(
+    model: &Model,
+    offline: &Model,
+    recording: &Recording,
+    options: &AdaptOptions,
+    described: serde_json::Value,
+    (again, counts): (&Errors, OutcomeCounts),
+) -> FitSummary {
+    let before = offline.fit.clone().unwrap_or_default();
+    let source = recording.source.as_ref();
+    let mut other = before.other;
+    other.insert(
+        "adapted".into(),
+        json!({
+            "method": options.learner,
+            "options": described,
+            "counts": counts,
+            "from": offline.fit.as_ref().map(|fit| json!({
+                "file": fit.file, "sha256": fit.sha256, "samples": fit.samples, "rmse": fit.rmse,
+            })),
+        }),
+    );
+    FitSummary {
+        start: options.start,
+        open_at_start: 0,
+        samples: again.samples,
+        rmse: again.rmse,
+        max_abs: again.max_abs,
+        nrmse_percent: again.nrmse_percent.unwrap_or_default(),
+        weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
+        simulated: before.simulated || recording.origin == Origin::Simulated,
+        file: source.map(|source| source.path.display().to_string()),
+        sha256: source.map(|source| source.sha256.clone()),
+        other_files: Vec::new(),
+        other_sha256: Vec::new(),
+        repeats: Vec::new(),
+        validation: None,
+        confidence: None,
+        other,
+        ..before
+    }
+}
+
+impl EstimatorOptions {
+    /// The options as a JSON object.
+    fn described(&self) -> serde_json::Value {
+        match self {
+            Self::Fixed => json!({}),
+            Self::Auto(auto) => json!({
+                "gate": auto.drift.gate,
+                "burst": auto.drift.burst,
+                "movement": auto.drift.movement,
+                "drift": described(&auto.drift),
+                "increments": described(&auto.increments),
+                "least-squares": auto.least_squares.as_ref().map(described),
+                "refit": auto.refit,
+            }),
+            Self::Weights(adaptation) => described(adaptation),
+            Self::Refit(refit) => json!(refit),
+            Self::Shift(options) => json!({
+                "noise": options.noise,
+                "spread": options.spread,
+                "walk": options.walk,
+                "reach": options.reach,
+                "dead_zone": options.dead_zone,
+                "movement": options.movement,
+                "gate": options.gate,
+                "burst": options.burst,
+            }),
+        }
+    }
+}
+
+/// The options as a JSON object: those of the method, and those that guard against bad readings.
+fn described(options: &Adaptation<f64>) -> serde_json::Value {
+    let mut object = match options.method {
+        Method::Increments { gain, span } => json!({"gain": gain, "span": span}),
+        Method::LeastSquares {
+            forgetting,
+            noise,
+            spread,
+            correlation,
+        } => {
+            json!({
+                "forgetting": forgetting,
+                "noise": noise,
+                "spread": spread,
+                "correlation": correlation,
+            })
+        }
+    };
+    object["offset_share"] = json!(options.offset_share);
+    object["dead_zone"] = json!(options.dead_zone);
+    object["leakage"] = json!(options.leakage);
+    object["movement"] = json!(options.movement);
+    object["trial"] = json!(options.trial);
+    object["gate"] = json!(options.gate);
+    object["burst"] = json!(options.burst);
+    object
+}
