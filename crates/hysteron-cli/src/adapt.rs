@@ -118,24 +118,16 @@ fn drift(adapted: &Adapted) -> String {
 
 fn worse(adapted: &Adapted) -> String {
     let error = |errors: Errors| adapted.model.output.text(errors.rmse);
-    let found = match adapted.late {
-        Some(late) if late.adapting.rmse < late.fixed.rmse => {
-            let again = adapted.again_late.unwrap_or(late);
-            format!(
-                "what it was in the end errs by {} (RMSE) over the last third, the model left alone \
-                 by {}, a constant by {}",
-                error(again.adapting),
-                error(again.fixed),
-                adapted.model.output.text(adapted.late_spread)
-            )
-        }
-        Some(late) => format!(
-            "over the last third it erred by {} (RMSE) before it learned, the model left alone by \
-             {}",
+    let found = match (adapted.late, adapted.again_late) {
+        (Some(late), Some(again)) => format!(
+            "over the last third it erred by {} (RMSE) before it learned, and errs by {} as it is in \
+             the end, the model left alone by {}, a constant by {}",
             error(late.adapting),
-            error(late.fixed)
+            error(again.adapting),
+            error(late.fixed),
+            adapted.model.output.text(adapted.late_spread)
         ),
-        None => "no reading of the last third can be compared".into(),
+        _ => "no reading of the last third can be compared".into(),
     };
     format!(
         "it ended no better: {found}: see the column `outcome` of --table, try another --method, or \

@@ -82,6 +82,7 @@ impl Recording {
                 false => Origin::Measured,
             },
             source: None,
+            undone: None,
         };
         recording.check().raise()?;
         Ok(recording.into())

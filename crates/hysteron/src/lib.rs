@@ -62,7 +62,7 @@ pub use data::{
     STANDARD_OUTPUT, Segment, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
     inspect_table, invert_table, preview_table, preview_table_knowing, simulate_table,
 };
-pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
+pub use design::{Design, DesignOptions, Leg, Rates, design, design_heated, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{
     Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_errors, evaluate_from,
@@ -103,7 +103,7 @@ pub use prepare::{
 };
 pub use progress::Progress;
 pub use recording::{
-    HoldOut, Origin, Quantity, Recording, Rows, Source, Split, one_after_the_other,
+    HoldOut, Origin, Quantity, Recording, Rows, Source, Split, UndoneLag, one_after_the_other,
 };
 pub use remedy::{Remedy, Setting, SettingValue, counted};
 pub use rivals::{Rival, RivalKind};

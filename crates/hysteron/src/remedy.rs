@@ -52,6 +52,12 @@ impl Remedy {
         Self { words, settings }
     }
 
+    /// The same, of a list.
+    pub(crate) fn listed(words: String, settings: Vec<Setting>) -> Self {
+        let words = words.into();
+        Self { words, settings }
+    }
+
     /// The text, with each option spelt by `spelling`.
     pub fn spelt(&self, spelling: impl Fn(&Setting) -> String) -> String {
         let mut words = self.words.split("{}");

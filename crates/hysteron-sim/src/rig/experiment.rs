@@ -144,6 +144,7 @@ impl Experiment {
             load_quantity: Quantity::named("load"),
             origin: Origin::Simulated,
             source: None,
+            undone: None,
         })
     }
 

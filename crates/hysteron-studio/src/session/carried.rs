@@ -7,7 +7,7 @@ use super::job::{Finished, Job, Watch};
 use super::saved::SavedFit;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use hysteron::{HoldOut, Origin, Quantity, Recording, Source};
+use hysteron::{HoldOut, Origin, Quantity, Recording, Source, UndoneLag};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -43,6 +43,7 @@ struct CarriedRecording {
     quantities: [(String, Option<String>); 3],
     simulated: bool,
     source: Option<(std::path::PathBuf, String)>,
+    undone: Option<UndoneLag>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -145,6 +146,7 @@ impl CarriedRecording {
             ],
             simulated: recording.origin == Origin::Simulated,
             source: source.map(|source| (source.path.clone(), source.sha256.clone())),
+            undone: recording.undone,
         }
     }
 
@@ -161,6 +163,7 @@ impl CarriedRecording {
                 false => Origin::Measured,
             },
             source: self.source.map(|(path, sha256)| Source::new(path, sha256)),
+            undone: self.undone,
             input: numbers(&self.input)?,
             output: numbers(&self.output)?,
         };

@@ -50,9 +50,9 @@ pub struct Adapted {
     pub again: Errors,
     /// The same over the samples of [`Adapted::late`], beside the fixed model.
     pub again_late: Option<Compared>,
-    /// The standard deviation of the measured output there: what a constant errs. A model that errs
-    /// about as much says nothing of an output that no longer follows its input; it is
-    /// [worse](Adapted::worse), too.
+    /// The standard deviation of the measured output there: what a constant errs. A model that erred
+    /// about as much before it learned says nothing of an output that no longer follows its input;
+    /// it is [worse](Adapted::worse), too.
     pub late_spread: f64,
     /// How the model has changed.
     pub drift: Drift,
@@ -83,9 +83,14 @@ impl Compared {
         (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
     }
 
-    /// Whether what learned is clearly the worse one, or says nothing of outputs of that `spread`.
-    pub(super) fn is_harm(&self, spread: f64) -> bool {
-        self.adapting.rmse > HARM * self.fixed.rmse || self.adapting.rmse > NOTHING * spread
+    /// Whether what learned is clearly the worse one.
+    pub(super) fn is_harm(&self) -> bool {
+        self.adapting.rmse > HARM * self.fixed.rmse
+    }
+
+    /// Whether what learned says nothing of outputs of that `spread`.
+    pub(super) fn says_nothing(&self, spread: f64) -> bool {
+        self.adapting.rmse > NOTHING * spread
     }
 }
 

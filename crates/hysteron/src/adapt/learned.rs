@@ -126,7 +126,8 @@ impl Learned {
         let stays = self.shift.is_none();
         Ok(Adapted {
             worse: is_worse(late.as_ref(), changed, offline.output_range())
-                || stays && again_late.is_some_and(|again| again.is_harm(late_spread)),
+                || late.is_some_and(|late| late.says_nothing(late_spread))
+                || stays && again_late.is_some_and(|again| again.is_harm()),
             drift,
             stuck,
             model: last,

@@ -159,11 +159,15 @@ fn learn(
             };
             // Nothing is learned from an output that was held. A learner alone sees it too late.
             for (part, is_held) in in_turn(part, &held) {
-                adaptive.freeze(is_held);
                 let (input, output) = (&recording.input[part.clone()], &recording.output[part]);
+                if is_held {
+                    adaptive.freeze(true);
+                }
                 learned.extend(adaptive.run(input, output, Progress::new(&told))?);
+                if is_held {
+                    adaptive.freeze(false);
+                }
             }
-            adaptive.freeze(false);
         }
     }
     // One that found a channel still has undone what it learned there, the samples before too.

@@ -118,7 +118,7 @@ pub(super) fn held_outputs(recording: &Recording, fixed: &[f64]) -> Vec<Range<us
         }
     }
     // One that lasts to the end is seen by what learns, which then goes back to before it.
-    found.retain(|run| run.end < recording.len());
+    found.retain(|run| run.end + SHORTEST <= recording.len());
     found.sort_by_key(|run| run.start);
     found
 }

@@ -1,11 +1,14 @@
 //! Design of an experiment: the shortest input profile that excites every operator.
 //!
 //! `spiral` finds the turning points of the profile. `profile` makes ramps over time from them.
-//! This file combines both, and takes earlier recordings and a time budget into account.
+//! This file combines both, and takes earlier recordings and a time budget into account. `heated`
+//! plans for an actuator whose body heats, in drives.
 
+mod heated;
 mod profile;
 mod spiral;
 
+pub use heated::design_heated;
 pub use profile::{Rates, ramps};
 
 use crate::error::{Error, Result};

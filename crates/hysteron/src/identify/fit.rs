@@ -487,6 +487,7 @@ impl<'a> Fit<'a> {
         kept::tell_left_out(&mut model);
         if self.prior.is_none() {
             kept::tell_different(&mut model, recordings);
+            kept::tell_recorded(&mut model, recordings);
         }
         Ok(model)
     }

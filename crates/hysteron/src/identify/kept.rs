@@ -6,7 +6,7 @@ use crate::identify::history::{self, find_start};
 use crate::identify::options::FitOptions;
 use crate::identify::rest::after;
 use crate::model::{Model, Start};
-use crate::recording::Recording;
+use crate::recording::{Recording, one_speed};
 use crate::series::{Errors, different_branches};
 use serde_json::json;
 use std::collections::HashSet;
@@ -90,6 +90,23 @@ pub(super) fn tell_different(model: &mut Model, recordings: &[Recording]) {
     }
 }
 
+/// The entries of a fit's record with the speed of the input, if all was recorded at one, and with
+/// the lag of its sensor that was undone.
+pub(crate) const SPEED: &str = "one_speed";
+pub(crate) const UNDONE_LAG: &str = "sensor_lag";
+
+/// Writes how the recordings came about into the record of the fit, as far as the verdict on others
+/// asks for it.
+pub(super) fn tell_recorded(model: &mut Model, recordings: &[Recording]) {
+    let Some(fit) = &mut model.fit else { return };
+    if let Some(speed) = one_speed(recordings) {
+        fit.other.insert(SPEED.into(), json!(speed));
+    }
+    if let Some(undone) = recordings.first().and_then(|first| first.undone) {
+        fit.other.insert(UNDONE_LAG.into(), json!(undone));
+    }
+}
+
 /// Writes the errors from the start that the model keeps into the record of its fit, over those of
 /// all samples that are `fitted`. Outliers do not count.
 ///
@@ -127,14 +144,14 @@ pub(crate) fn tell_left_out(model: &mut Model) {
     let Some(fit) = &mut model.fit else { return };
     let undone = fit.other.remove("undone");
     let undone = undone.and_then(|found| found["rmse"].as_f64());
-    if let (Some(undone), Some(found)) = (undone, &mut fit.validation)
-        && undone > fit.rmse
-    {
-        let share = fit.rmse / undone;
-        found.rmse *= share;
-        found.nrmse_percent *= share;
-        for score in &mut found.scores {
-            score.rmse *= share;
-        }
+    let (Some(undone), Some(found)) = (undone, &mut fit.validation) else {
+        return;
+    };
+    let share = (fit.rmse / undone).min(1.0);
+    found.rmse *= share;
+    // In percent of what was measured, and not of what the operators gave.
+    found.nrmse_percent = found.rmse * fit.nrmse_percent / fit.rmse;
+    for score in &mut found.scores {
+        score.rmse *= share;
     }
 }

@@ -39,7 +39,7 @@ pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, S
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::recording::{Recording, one_speed};
+use crate::recording::{Recording, UndoneLag, one_speed};
 use crate::remedy::{Remedy, Setting};
 use crate::series::NOISE;
 use crate::series::filter::low_pass;
@@ -305,6 +305,8 @@ fn undo_lag(
             report.undone = Some(tau);
             report.one_speed = one_speed(std::slice::from_ref(work));
             report.one_speed = report.one_speed.filter(|_| report.estimate.is_some());
+            let estimated = report.estimate.is_some();
+            work.undone = Some(UndoneLag { tau, estimated });
             if resamples {
                 clock.resampled = clock.step;
             }

@@ -22,7 +22,7 @@ pub(crate) use positions::Positions;
 #[cfg(feature = "data")]
 pub(crate) use positions::RUN;
 pub use rows::Rows;
-pub(crate) use speed::one_speed;
+pub(crate) use speed::{ONE, one_speed};
 pub use split::{HoldOut, Split};
 pub(crate) use split::{split_each, split_ends};
 pub(crate) use units::Measures;
@@ -30,6 +30,7 @@ pub(crate) use units::Measures;
 use crate::error::{Error, Place, Result};
 use crate::series::lost::wrong_of_both;
 use crate::series::range;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A physical quantity: its name and, if known, its unit.
@@ -173,6 +174,17 @@ pub struct Recording {
     pub origin: Origin,
     /// The file that it was read from, if any.
     pub source: Option<Source>,
+    /// The lag of the input's sensor that was undone in it.
+    pub undone: Option<UndoneLag>,
+}
+
+/// A lag of the input's sensor that was undone ([`crate::prepare()`]).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct UndoneLag {
+    /// Its time constant, s.
+    pub tau: f64,
+    /// Whether it was estimated from the recording, and not given.
+    pub estimated: bool,
 }
 
 /// Lets one recording be passed where a slice of recordings is expected.
@@ -198,6 +210,7 @@ impl Recording {
             load_quantity: Quantity::named("load"),
             origin: Origin::Measured,
             source: None,
+            undone: None,
         };
         recording.check()?;
         Ok(recording)

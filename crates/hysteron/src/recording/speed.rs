@@ -8,7 +8,7 @@ use crate::series::coarse::goes_by_jumps;
 const BRANCHES: usize = 4;
 
 /// The faster tenth of the branches is less than this many times as fast as the slower one.
-const ONE: f64 = 1.5;
+pub(crate) const ONE: f64 = 1.5;
 
 /// The speed of the input along a branch in the middle, per second, if all are about as fast;
 /// `None` without time, and where the input jumps.

@@ -204,6 +204,7 @@ impl Recording {
             load_quantity: self.load_quantity.clone(),
             origin: self.origin,
             source: self.source.clone(),
+            undone: self.undone,
         }
     }
 

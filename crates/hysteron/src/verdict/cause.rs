@@ -5,9 +5,9 @@ use super::parts::{ErrorPart, PartKind, parts_after};
 use super::tested::BEYOND;
 use crate::evaluate::Evaluation;
 use crate::hold_out::HeldOut;
-use crate::identify::kept::DIFFERENT;
-use crate::model::FitSummary;
-use crate::recording::Recording;
+use crate::identify::kept::{DIFFERENT, SPEED, UNDONE_LAG};
+use crate::model::{FitSummary, Model};
+use crate::recording::{ONE, Recording, one_speed};
 use crate::series::{different_branches, usual_tolerance};
 
 /// Why a model is not better.
@@ -65,6 +65,16 @@ pub enum Cause {
     OneSpeed {
         /// The speed, per second.
         speed: f64,
+    },
+    /// What comes late in the model was found where the input had one speed, and this one has others.
+    OtherSpeed {
+        /// The speed, per second.
+        speed: f64,
+    },
+    /// The model was fitted to inputs in which the lag of the sensor was undone, and here it is not.
+    LagLeft {
+        /// Its time constant, s.
+        tau: f64,
     },
     /// The model errs much more on what it was fitted to than on what was held out.
     Easier {
@@ -139,6 +149,8 @@ impl Cause {
             Self::FewBranches { .. } => "few_branches",
             Self::FewPoints { .. } => "few_points",
             Self::OneSpeed { .. } => "one_speed",
+            Self::OtherSpeed { .. } => "other_speed",
+            Self::LagLeft { .. } => "lag_left",
             Self::Easier { .. } => "easier",
             Self::LoadsLeftOut { .. } => "loads_left_out",
             Self::Misfit { .. } => "misfit",
@@ -149,6 +161,8 @@ impl Cause {
     pub(super) fn weight(&self) -> f64 {
         match self {
             Self::Outside { share } if *share > OUTSIDE => 3.0,
+            Self::LagLeft { .. } => 2.5,
+            Self::OtherSpeed { .. } => 2.2,
             Self::Readings { share, .. } => 1.0 + share,
             Self::Part(part) => 1.0 + part.share,
             Self::Rival { .. } => 0.9,
@@ -235,6 +249,39 @@ fn places(values: &[f64]) -> impl Iterator<Item = f64> {
         }
         moves
     })
+}
+
+/// What the recordings of an evaluation have not in common with those that were fitted.
+pub(super) fn other_circumstances(model: &Model, recordings: &[Recording]) -> Vec<Cause> {
+    let Some(fit) = &model.fit else {
+        return Vec::new();
+    };
+    let undone = fit
+        .other
+        .get(UNDONE_LAG)
+        .and_then(|found| found["tau"].as_f64());
+    let left = recordings
+        .iter()
+        .all(|recording| recording.undone.is_none());
+    let left = undone.filter(|_| left).map(|tau| Cause::LagLeft { tau });
+    let speed = fit.other.get(SPEED).and_then(serde_json::Value::as_f64);
+    let here = one_speed(recordings);
+    let is_other = |speed: &f64| here.is_none_or(|here| here.max(*speed) >= ONE * here.min(*speed));
+    let timed = recordings.iter().all(|recording| recording.time.is_some());
+    let speed = speed
+        .filter(|_| timed && comes_late(model))
+        .filter(is_other);
+    let speed = speed.map(|speed| Cause::OtherSpeed { speed });
+    left.into_iter().chain(speed).collect()
+}
+
+/// Whether a model has what at one speed is not told from a wider loop.
+pub(super) fn comes_late(model: &Model) -> bool {
+    let guessed = || {
+        let fit = model.fit.as_ref()?;
+        fit.other.get(UNDONE_LAG)?["estimated"].as_bool()
+    };
+    model.is_timed() || !model.delay().is_none() || guessed().unwrap_or(false)
 }
 
 /// The inputs of an evaluation that the model does not know.

@@ -2,7 +2,7 @@
 //!
 //! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for,
 //! and `judge` finds it. `tested` reads from the record of a fit what it was tested on; `parts` tells
-//! what an error consists of, `readings` which of it is in readings that are wrong, `worst` where it
+//! what an error consists of, `tried` what a fit has looked for, `readings` which of it is in readings that are wrong, `worst` where it
 //! is largest, and `cause` what is behind it. `words` says
 //! all of it in sentences. `serial` writes it.
 
@@ -13,6 +13,7 @@ mod parts;
 mod readings;
 mod serial;
 mod tested;
+mod tried;
 mod words;
 mod worst;
 
@@ -34,6 +35,7 @@ use crate::series::noise::noise;
 use grade::GOOD;
 use std::borrow::Cow;
 use tested::{Tested, best_of, on_others};
+use tried::Tried;
 use worst::{rmse_without, worst};
 
 /// Whether a model is good enough, and if not, why.
@@ -85,6 +87,8 @@ pub struct Verdict {
     pub input: Quantity,
     /// The output.
     pub output: Quantity,
+    /// What a fit looked for by request, or has: it is no advice.
+    tried: Tried,
 }
 
 /// The rival of an evaluation.
@@ -125,6 +129,7 @@ impl Verdict {
             one_speed: None,
             input: model.input.clone(),
             output: model.output.clone(),
+            tried: Tried::default(),
         })
     }
 
@@ -252,6 +257,7 @@ impl Verdict {
                 one_speed: None,
                 input: first.input_quantity.clone(),
                 output: first.output_quantity.clone(),
+                tried: Tried::default(),
             },
         };
         verdict.noise = noise_of(recordings, output);
@@ -263,10 +269,16 @@ impl Verdict {
             let parts = cause::of_parts(recordings, output, was_fitted);
             verdict.causes.extend(parts);
         }
-        let comes_late = model.without_body().is_timed() || !model.delay().is_none();
-        if let (true, true, Some(speed)) = (was_fitted, comes_late, verdict.one_speed) {
-            verdict.causes.push(Cause::OneSpeed { speed });
-        }
+        let at_one = verdict.one_speed.filter(|_| cause::comes_late(model));
+        verdict.causes.extend(match was_fitted {
+            true => at_one
+                .map(|speed| Cause::OneSpeed { speed })
+                .into_iter()
+                .collect(),
+            false if percent > GOOD => cause::other_circumstances(model, recordings),
+            false => Vec::new(),
+        });
+        verdict.tried = Tried::by(model, recordings);
         if let Some(fit) = &model.fit {
             verdict.causes.extend(match was_fitted {
                 true => cause::few_points(recordings),

@@ -10,7 +10,8 @@ use serde::Serialize;
 pub enum PartKind {
     /// A constant, in the output's unit: another mounting, another zero of the sensor.
     Offset,
-    /// The output moves by so much more than the model's, from −1 on: 0.1 is 10 % more.
+    /// The output moves by so much more than the model's, about zero or about its mean, from −1 on:
+    /// 0.1 is 10 % more.
     Gain,
     /// The loops lie further along the input by a constant, in its unit: another sensor or load.
     Shift,
@@ -77,6 +78,27 @@ pub(super) fn parts_after(
     recordings: &[Recording],
     modelled: &[f64],
 ) -> [ErrorPart; 5] {
+    let about_zero = parts_about(0.0, named, recordings, modelled);
+    if !named.is_empty() {
+        return about_zero;
+    }
+    // A gain about zero, as of another unit, or about the middle: of these the other one would stand
+    // as a gain and an offset that is larger than the error.
+    let middle = modelled.iter().sum::<f64>() / modelled.len().max(1) as f64;
+    let about_middle = parts_about(middle, named, recordings, modelled);
+    match about_middle[0].share > about_zero[0].share + LEFT {
+        true => about_middle,
+        false => about_zero,
+    }
+}
+
+/// The parts, with a gain about an output of `middle`.
+fn parts_about(
+    middle: f64,
+    named: &[PartKind],
+    recordings: &[Recording],
+    modelled: &[f64],
+) -> [ErrorPart; 5] {
     // The Gram matrix of the five regressors and of the difference itself.
     let mut gram = [[0.0; 6]; 6];
     let mut first = 0;
@@ -92,7 +114,14 @@ pub(super) fn parts_after(
             let turns = (x[after] - x[n]) * (x[n] - x[before]) <= 0.0;
             let slope = if turns { 0.0 } else { dy / dx };
             let along = n as f64 / (count.max(2) - 1) as f64;
-            let row = [1.0, y[n], slope, dy / steps, along, measured[n] - y[n]];
+            let row = [
+                1.0,
+                y[n] - middle,
+                slope,
+                dy / steps,
+                along,
+                measured[n] - y[n],
+            ];
             for (i, a) in row.iter().enumerate() {
                 for (j, b) in row.iter().enumerate() {
                     gram[i][j] += a * b;

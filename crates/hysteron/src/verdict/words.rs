@@ -13,6 +13,8 @@ fn is_odd(gain: &ErrorPart) -> bool {
     !(-0.6..=1.5).contains(&gain.size)
 }
 
+const CREEP: Setting = Setting::word("creep", "auto");
+
 /// What helps a model that cannot follow.
 const MORE: &str = "record more reversals inside the range (design makes such an input)";
 /// The same, where what depends on the speed was not seen.
@@ -133,6 +135,16 @@ impl Verdict {
                 "all was recorded at one speed ({} per second), so what comes late is not told \
                  from a wider loop: at other speeds it is a guess",
                 self.input.text(*speed)
+            ),
+            Cause::OtherSpeed { speed } => format!(
+                "what comes late in the model was found at one speed ({} per second), and this one \
+                 has others: there it was a guess",
+                self.input.text(*speed)
+            ),
+            Cause::LagLeft { tau } => format!(
+                "the model was fitted with a lag of {} s of the input's sensor undone, and here it \
+                 is not",
+                Quantity::default().text(*tau)
             ),
             Cause::Easier { percent } => format!(
                 "the model errs {percent:.2} % of the range on what it was fitted to: what was held \
@@ -275,9 +287,13 @@ impl Verdict {
                     [],
                 ),
                 PartKind::Late if part.size < 0.0 => Remedy::new(
-                    "if the sensor of the input is slow, undo it with {}; else look whether input \
-                     and output are exchanged, and whether their rows belong together",
-                    [Setting::word("sensor-lag", "auto")],
+                    "if the sensor of the input is slow, undo it with {}; if the loop runs the other \
+                     way round, fit it with {}, which has no inverse; else look whether input and \
+                     output are exchanged, and whether their rows belong together",
+                    [
+                        Setting::word("sensor-lag", "auto"),
+                        Setting::word("solver", "ols"),
+                    ],
                 ),
                 PartKind::Late if self.has_time => Remedy::new(
                     "let the fit look for what comes late: {}, {}, or {} for a drive that heats",
@@ -315,6 +331,15 @@ impl Verdict {
                 "use {}, which replaces them if that helps",
                 [Setting::on("prepare")],
             ),
+            Some(Cause::LagLeft { .. }) => Remedy::new(
+                "undo it here too, with {} and that time constant",
+                [Setting::any("sensor-lag")],
+            ),
+            Some(Cause::OtherSpeed { .. }) => Remedy::new(
+                "fit both recordings together, so that there are several speeds, or compare a fit \
+                 without what comes late: {}",
+                [Setting::word("dynamics", "off")],
+            ),
             Some(Cause::OneSpeed { .. }) => Remedy::new(
                 "record at two speeds or more, of which one is several times the other",
                 [],
@@ -324,28 +349,30 @@ impl Verdict {
             }
             _ => {
                 let record = self.one_speed.map_or(MORE, |_| FASTER);
-                let words = |more| format!("{record}{more}");
-                let [load, time] = [Setting::any("load"), Setting::any("time")];
-                let [creep, thermal] = [Setting::word("creep", "auto"), Setting::on("thermal")];
-                match (self.has_load, self.has_time) {
-                    (false, false) => Remedy::new(
-                        words(", or name what else moves the output: {}, {}"),
-                        [load, time],
+                let (load, time) = (self.has_load, self.has_time);
+                let steps = [
+                    (time && !self.tried.creep, ", look for creep ({})", CREEP),
+                    (
+                        time && !load && !self.tried.thermal,
+                        ", for a body that heats if the input is a drive ({})",
+                        Setting::on("thermal"),
                     ),
-                    (false, true) => Remedy::new(
-                        words(
-                            ", let the fit look for what comes late ({}, or {} for a drive that \
-                             heats) or undo a slow sensor of the input ({}), or name what else moves \
-                             the output: {}",
-                        ),
-                        [creep, thermal, Setting::word("sensor-lag", "auto"), load],
+                    (
+                        time && !load && !self.tried.sensor_lag,
+                        ", undo a slow sensor of the input ({})",
+                        Setting::word("sensor-lag", "auto"),
                     ),
-                    (true, false) => Remedy::new(words(", or name the time: {}"), [time]),
-                    (true, true) => Remedy::new(
-                        words(", or let the fit look for what comes late: {}"),
-                        [creep],
+                    (
+                        !load,
+                        ", name what else moves the output ({})",
+                        Setting::any("load"),
                     ),
-                }
+                    (!time, ", name the time ({})", Setting::any("time")),
+                ];
+                let steps = steps.into_iter().filter(|(helps, ..)| *helps);
+                let (words, settings): (String, Vec<Setting>) =
+                    steps.map(|(_, words, setting)| (words, setting)).unzip();
+                Remedy::listed(format!("{record}{words}"), settings)
             }
         }
     }

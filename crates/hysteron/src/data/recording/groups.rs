@@ -179,6 +179,7 @@ impl Groups {
             load_quantity,
             origin: Origin::Measured,
             source: None,
+            undone: None,
         };
         recording.check()?;
         Ok((recording, notes.collect()))

@@ -293,6 +293,7 @@ fn read_parts(
             output_quantity: output_quantity.clone(),
             load_quantity: load_quantity.clone(),
             origin: Origin::Measured,
+            undone: None,
             source: source.clone().map(|source| Source {
                 places: (!plain).then(|| samples.places.part(begin..end)),
                 ..source
