@@ -2,7 +2,9 @@
 
 use crate::terminal::{Result, print};
 use crate::{args, text};
-use hysteron::{Design, DesignOptions, Excitation, Quantity, Rates, TableReader, TableWriter};
+use hysteron::{
+    Design, DesignOptions, Excitation, Model, Quantity, Rates, TableReader, TableWriter,
+};
 use hysteron_files::{AtomicFile, Own};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -24,27 +26,31 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
         AtomicFile::create(target, Own::SAME_BYTES)
     });
     let figure = figure.transpose()?;
-    let options = DesignOptions {
-        operator: args.operator.into(),
-        budget_s: args.budget.map(|minutes| 60.0 * minutes),
-        step_s: args.step,
-        ..DesignOptions::within(
-            args.range,
-            args.levels,
-            Rates {
-                heating: args.heating_rate,
-                cooling: args.cooling_rate,
-            },
-        )?
-    };
+    let rates = args.heating_rate.zip(args.cooling_rate);
+    let rates = rates.map(|(heating, cooling)| Rates { heating, cooling });
+    let budget_s = args.budget.map(|minutes| 60.0 * minutes);
     let column = args.input.as_deref().unwrap_or("input");
-    let recorded: Vec<Vec<f64>> = args
-        .from
-        .iter()
-        .map(|path| input_of(path, column, args.memory.limit()))
-        .collect::<Result<_>>()?;
-    let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
-    let design = hysteron::design(&options, &inputs)?;
+    let design = match (&args.model, args.range, rates) {
+        (Some(model), range, rates) => {
+            let model = Model::read(model)?;
+            let limits = (budget_s, args.step);
+            hysteron::design_heated(&model, range, args.levels, rates, limits)?
+        }
+        (None, Some(range), Some(rates)) => {
+            let options = DesignOptions {
+                operator: args.operator.into(),
+                budget_s,
+                step_s: args.step,
+                ..DesignOptions::within(range, args.levels, rates)?
+            };
+            let recorded = args.from.iter();
+            let recorded = recorded.map(|path| input_of(path, column, args.memory.limit()));
+            let recorded: Vec<Vec<f64>> = recorded.collect::<Result<_>>()?;
+            let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
+            hysteron::design(&options, &inputs)?
+        }
+        _ => return Err("name a range and both rates, or a model".into()),
+    };
     let profile = (!design.legs.is_empty()).then_some(&args.out);
     if profile.is_some() {
         design.write_to(table)?;

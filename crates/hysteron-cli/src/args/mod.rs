@@ -309,17 +309,24 @@ pub(crate) struct Inspect {
 pub(crate) struct Design {
     /// Range in which the profile stays: it starts at the lowest input, and the plane's lowest level
     /// is one step above
-    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
-    pub(crate) range: (f64, f64),
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true,
+          required_unless_present = "model")]
+    pub(crate) range: Option<(f64, f64)>,
+    /// A model with a thermal body: the profile is of drives, which stay in the range [default: of
+    /// the drives fitted], and its temperature follows the ramps
+    #[arg(long, value_name = "MODEL", conflicts_with = "from")]
+    pub(crate) model: Option<PathBuf>,
     /// Number of levels K of the plane; it has K(K+1)/2 operators
     #[arg(long, value_parser = parse_levels)]
     pub(crate) levels: usize,
     /// How fast the input can rise, in its unit per second
-    #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true)]
-    pub(crate) heating_rate: f64,
+    #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true,
+          required_unless_present = "model", requires = "cooling_rate")]
+    pub(crate) heating_rate: Option<f64>,
     /// How fast it can fall
-    #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true)]
-    pub(crate) cooling_rate: f64,
+    #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true,
+          required_unless_present = "model", requires = "heating_rate")]
+    pub(crate) cooling_rate: Option<f64>,
     /// Longest duration: as many loops as fit, evenly spread [default: as long as needed]
     #[arg(long, value_name = "MINUTES", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) budget: Option<f64>,

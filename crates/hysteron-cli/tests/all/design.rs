@@ -187,3 +187,25 @@ fn bad_arguments_are_refused() {
         assert!(!path.join("profile.csv").exists() && !path.join("plane.svg").exists());
     }
 }
+
+/// A model with a body that heats: the profile is of drives, and none leaves the range.
+#[test]
+fn a_model_with_a_body_gets_a_profile_of_drives() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = r#"{"format": "hysteron-model", "version": 2, "operator": "mkp",
+        "plane": {"min": 30, "max": 80, "levels": 2}, "weights": [1, 1, 1],
+        "thermal": {"kind": "first-order", "ambient": 20, "gain": 10, "tau_heating": 3,
+                    "tau_cooling": 6}}"#;
+    fs::write(folder.path().join("m.json"), model).unwrap();
+    let line = "design --model m.json --range 0,8 --levels 6 -o drives.csv --json";
+    let (code, out, err) = run(folder.path(), line);
+    assert_eq!(code, 0, "{err}");
+    let said: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(said["excitation"]["determined"], 21);
+    let drives = table(&folder.path().join("drives.csv"));
+    assert!(drives.iter().all(|(_, drive)| (0.0..=8.0).contains(drive)));
+    // Hardly any is at rest.
+    assert!(drives.iter().any(|(_, drive)| *drive > 7.0));
+    let (code, _, err) = run(folder.path(), "design --levels 6 -o more.csv");
+    assert!(code != 0 && err.contains("--range"), "{err}");
+}

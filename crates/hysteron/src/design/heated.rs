@@ -52,7 +52,7 @@ pub fn design_heated(
         (reached.0 + margin).max(bottom),
         (reached.1 - margin).min(top),
     );
-    if !(low < high) {
+    if low >= high || !(low.is_finite() && high.is_finite()) {
         return Err(Error::Design(format!(
             "drives from {} to {} hold temperatures from {} to {}, which move no operator of the \
              model ({bottom} to {top})",
