@@ -146,7 +146,7 @@ function card(overview, fit, place, { isOpen, drawn, draw, changed }) {
       error("held out", fit.held_out?.model, fit.output),
       rival && error(wins ? `${rival.name} is better` : rival.name, rival, fit.output, wins ? "worse" : "quiet"),
       error("fitted", fit, fit.output),
-      error("inverse while the output moves, of the input", fit.inverse_errors, fit.input))),
+      error("inverse, of the input", fit.inverse_errors, fit.input))),
     ...fit.late.map((words) => el("p", {}, `Found: ${words}.`)),
     !fit.inverse && el("p", { class: "warn" }, "It has weights below zero, and so no inverse."),
     ...fit.advice.map((text) => el("p", { class: "warn" }, text)),
