@@ -73,7 +73,7 @@ impl Course {
         let model = Model::read(&config.at(model))?;
         if model.thermal.is_some() {
             let what = "the plane of this model is one of temperatures, which no drive has: \
-                        `hysteron design` makes a profile that you can convert";
+                        `hysteron design --model` makes a table of drives to play";
             return Err(config.refused("profile.model", what));
         }
         let (heating, cooling) = options.rates.ok_or_else(|| missing("profile.rates"))?;
