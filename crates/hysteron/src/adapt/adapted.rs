@@ -18,12 +18,12 @@ const NOTHING: f64 = 0.9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Adapted {
     /// The model with the last weights that are not on [probation](Adapted::probation). Its
-    /// [`FitSummary`] gives the errors of these weights over the whole recording. The confidence of
-    /// the off-line model does not hold for them and is removed. The field `adapted` records how
+    /// [`crate::FitSummary`] gives the errors of these weights over the whole recording. The
+    /// confidence of the off-line model does not hold for them and is removed. The field `adapted` records how
     /// they were obtained.
     pub model: Model,
     /// Number of samples at the end that did not change the model, because no later samples can
-    /// confirm them: [`AdaptOptions::burst`], or 0 without a [`AdaptOptions::gate`].
+    /// confirm them: [`crate::AdaptOptions::burst`], or 0 without a [`crate::AdaptOptions::gate`].
     pub probation: usize,
     /// Output expected at each sample before the estimator learned from it.
     pub output_model: Vec<f64>,
@@ -58,10 +58,10 @@ pub struct Adapted {
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
     pub stuck: Vec<Stuck>,
-    /// The learners that [`Learner::Auto`] mixes, each with its share of the model; empty for the
+    /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty for the
     /// other learners. *trend* is the refit, and half as far beyond it as it moved in a cycle.
     pub shares: Vec<(&'static str, f64)>,
-    /// What [`Learner::Load`] found; `None` for the other learners.
+    /// What [`crate::Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
     /// The options of what learned.
     pub options: EstimatorOptions,
