@@ -19,8 +19,8 @@ const NOTHING: f64 = 0.9;
 pub struct Adapted {
     /// The model with the last weights that are not on [probation](Adapted::probation). Its
     /// [`crate::FitSummary`] gives the errors of these weights over the whole recording. The
-    /// confidence of the off-line model does not hold for them and is removed. The field `adapted` records how
-    /// they were obtained.
+    /// confidence of the off-line model does not hold for them and is removed. The field `adapted`
+    /// records how they were obtained.
     pub model: Model,
     /// Number of samples at the end that did not change the model, because no later samples can
     /// confirm them: [`crate::AdaptOptions::burst`], or 0 without a [`crate::AdaptOptions::gate`].
@@ -58,8 +58,8 @@ pub struct Adapted {
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
     pub stuck: Vec<Stuck>,
-    /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty for the
-    /// other learners. *trend* is the refit, and half as far beyond it as it moved in a cycle.
+    /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty for
+    /// the other learners. *trend* is the refit, and half as far beyond it as it moved in a cycle.
     pub shares: Vec<(&'static str, f64)>,
     /// What [`crate::Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
