@@ -82,12 +82,11 @@ impl Learned {
             learning.outcome = Outcome::OutputStuck;
         }
         let outcomes = learned.iter().map(|learning| learning.outcome);
-        let outcomes: Vec<Outcome> = outcomes.collect();
+        let mut outcomes: Vec<Outcome> = outcomes.collect();
         let stuck = Stuck::all(&outcomes, joined, &fixed, self.still, &self.held);
         for n in self.held.iter().cloned().flatten() {
-            learned[n].outcome = Outcome::OutputStuck;
+            (learned[n].outcome, outcomes[n]) = (Outcome::OutputStuck, Outcome::OutputStuck);
         }
-        let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
         let counts = OutcomeCounts::of(&learned);
         let beside_fixed = |outputs: &[f64], which: &dyn Fn(usize) -> bool| {
             Some(Compared {

@@ -92,14 +92,15 @@ pub fn adapt(
     }
     // The operators between the stages of a model learn, and what it gives behind them is judged.
     if model.is_plain() || model.load.is_some() {
-        return learn(model, recordings, options, progress)?.judged(&joined, options);
+        return learn(model, (recordings, &joined), options, progress)?.judged(&joined, options);
     }
     let seen = recordings.iter().map(|recording| {
         let seen = model.recording_within(recording)?;
         Ok(seen.into_owned())
     });
     let seen: Vec<Recording> = seen.collect::<Result<_>>()?;
-    let mut learned = learn(&model.within(), &seen, options, progress)?;
+    let seen_joined = one_after_the_other(&seen).ok_or_else(no_recordings)?;
+    let mut learned = learn(&model.within(), (&seen, &seen_joined), options, progress)?;
     learned.pass(model, recordings);
     let mut adapted = learned.judged(&joined, options)?;
     let mut whole = model.around(adapted.model.operators().clone());
@@ -108,16 +109,16 @@ pub fn adapt(
     Ok(adapted)
 }
 
-/// Runs an estimator over recordings, for a model of operators alone or with a load.
+/// Runs an estimator over recordings, for a model of operators alone or with a load. `joined` are
+/// the recordings one after the other.
 fn learn(
     model: &Model,
-    recordings: &[Recording],
+    (recordings, joined): (&[Recording], &Recording),
     options: &AdaptOptions,
     progress: Progress<'_>,
 ) -> Result<Learned> {
     refuse_unusable(model)?;
-    let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
-    let learned_by = options.resolve(model, &joined)?;
+    let learned_by = options.resolve(model, joined)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
     let (from_on, fixed) = fixed(&offline, recordings, options.start)?;

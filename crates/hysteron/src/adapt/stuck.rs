@@ -73,16 +73,12 @@ impl Stuck {
             }
             goes_on = true;
         }
-        for samples in held.iter().cloned() {
-            if found.iter().all(|one| are_apart(&one.samples, &samples)) {
-                let channel = Channel::Output;
-                found.push(Self { channel, samples });
-            }
-        }
+        let held = held.iter().map(|run| (Channel::Output, run.clone()));
         // An input that is frozen to the last digit is one at rest to a learner.
-        for samples in frozen(&recording.input, &recording.output) {
+        let frozen = frozen(&recording.input, &recording.output).into_iter();
+        let frozen = frozen.map(|run| (Channel::Input, run));
+        for (channel, samples) in held.chain(frozen) {
             if found.iter().all(|one| are_apart(&one.samples, &samples)) {
-                let channel = Channel::Input;
                 found.push(Self { channel, samples });
             }
         }

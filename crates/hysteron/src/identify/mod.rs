@@ -46,6 +46,7 @@ pub use options::{Auto, Choice, Dynamics, FitOptions, LoadLaw, Spacing, Thermal}
 pub use prior::WeightPrior;
 pub(crate) use rest::find_rest;
 pub use stages::SpacingShape;
+pub(crate) use stages::AFTER;
 pub use weights::experiment::plane_of;
 pub(crate) use weights::pivoting;
 pub(crate) use weights::rows::Term;

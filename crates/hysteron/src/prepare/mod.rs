@@ -303,9 +303,10 @@ fn undo_lag(
         let change = Clock::change(even, 0, undone);
         if judge.offer("lag of the sensor", how, work, change) {
             report.undone = Some(tau);
-            report.one_speed = one_speed(std::slice::from_ref(work));
-            report.one_speed = report.one_speed.filter(|_| report.estimate.is_some());
             let estimated = report.estimate.is_some();
+            if estimated {
+                report.one_speed = one_speed(std::slice::from_ref(work));
+            }
             work.undone = Some(UndoneLag { tau, estimated });
             if resamples {
                 clock.resampled = clock.step;

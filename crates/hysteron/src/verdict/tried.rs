@@ -1,10 +1,8 @@
 //! What a fit looked for or has, so that it is no advice any more.
 
-use crate::model::Model;
+use crate::identify::AFTER;
+use crate::model::{FitSummary, Model};
 use crate::recording::Recording;
-
-/// The entry of a fit's record for creep and lag that were looked for.
-const AFTER: &str = "after";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Tried {
@@ -15,7 +13,7 @@ pub(super) struct Tried {
 
 impl Tried {
     pub(super) fn by(model: &Model, recordings: &[Recording]) -> Self {
-        let looked_for = |fit: &crate::model::FitSummary| fit.other.contains_key(AFTER);
+        let looked_for = |fit: &FitSummary| fit.other.contains_key(AFTER);
         Self {
             creep: model.fit.as_ref().is_some_and(looked_for),
             thermal: model.thermal.is_some(),

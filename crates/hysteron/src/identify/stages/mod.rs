@@ -38,6 +38,8 @@ use std::borrow::Cow;
 
 /// The entry of a fit's record for a ring that was found.
 pub(crate) const RING: &str = "ring";
+/// The entry for creep and lag that were looked for.
+pub(crate) const AFTER: &str = "after";
 
 /// What a fit identifies besides the weights.
 pub(crate) struct Asked<'a> {
@@ -122,7 +124,7 @@ pub(crate) fn fit(
         false => None,
     };
     if let Some((after, report)) = after {
-        notes.insert("after".to_owned(), json!(report));
+        notes.insert(AFTER.to_owned(), json!(report));
         seen = Cow::Owned(undone::before(&after, &seen)?);
         found.behind = after;
     }
