@@ -212,7 +212,8 @@ impl Advice {
 pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     let plane = model.plane();
     let (mut inputs, mut samples, mut against) = (0, 0, 0.0_f64);
-    for recording in recordings {
+    let wrong: Vec<_> = recordings.iter().map(Recording::wrong_readings).collect();
+    for (recording, wrong) in recordings.iter().zip(&wrong) {
         let seen = model.behind_body(recording)?;
         let positions = match &model.load {
             // The load moves the axis under the plane.
@@ -229,7 +230,6 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         // nothing then. Nor does a wrong reading.
         let comes_late = model.without_body().is_timed() || !model.delay().is_none();
         if model.load.is_none() && !comes_late {
-            let wrong = recording.wrong_readings();
             let is_right = |n: usize| wrong.iter().all(|found| found.binary_search(&n).is_err());
             if let Some(right) = seen.only(is_right) {
                 against = against.max(way_against_input(&right, model.sign())?);
@@ -250,7 +250,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     let noisy = recordings.iter().find_map(false_reversals);
     let fit = model.fit.as_ref();
     let outliers = fit.map_or(&[][..], |fit| &fit.outliers);
-    advice.extend(spikes(recordings, outliers));
+    advice.extend(spikes(recordings, wrong, outliers));
     if let Some(fit) = &model.fit {
         if let Some(noisy) = noisy {
             advice.push(noisy);
@@ -301,18 +301,24 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
 #[must_use]
 pub fn advice_before_fit(recordings: &[Recording]) -> Vec<Advice> {
     let noisy = recordings.iter().find_map(false_reversals);
-    spikes(recordings, &[]).chain(noisy).collect()
+    let wrong = recordings.iter().map(Recording::wrong_readings);
+    spikes(recordings, wrong.collect(), &[])
+        .chain(noisy)
+        .collect()
 }
 
-/// The wrong readings of each series of each recording, but for `outliers`.
-fn spikes(recordings: &[Recording], outliers: &[Outlier]) -> impl Iterator<Item = Advice> {
-    let each = recordings.iter().enumerate();
-    each.flat_map(|(number, recording)| {
+/// The `wrong` readings of each series of each recording, but for `outliers`.
+fn spikes(
+    recordings: &[Recording],
+    wrong: Vec<[Vec<usize>; 2]>,
+    outliers: &[Outlier],
+) -> impl Iterator<Item = Advice> {
+    let each = recordings.iter().zip(wrong).enumerate();
+    each.flat_map(|(number, (recording, [input, mut output]))| {
         let is_outlier = |sample| {
             let mut outliers = outliers.iter();
             outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
         };
-        let [input, mut output] = recording.wrong_readings();
         output.retain(|sample| !is_outlier(*sample));
         let of = |found: Vec<usize>, quantity: &Quantity| {
             found.first().map(|first| Advice::Spikes {

@@ -58,6 +58,24 @@ fn at(recording: &Recording, kept: &[usize]) -> Recording {
 /// tell candidates apart no better than their noise, and a pass over them takes longer.
 const ENOUGH: usize = 50_000;
 
+/// The samples of a recording that choices need, where it has more. The least and the largest load are
+/// among them, because weights are functions of the load between these.
+pub(super) fn enough(recording: &Recording) -> Option<Vec<usize>> {
+    let stride = recording.len().div_ceil(ENOUGH);
+    if stride <= 1 {
+        return None;
+    }
+    let mut samples = kept(&recording.input, stride);
+    if let Some(load) = &recording.load {
+        let by = |a: &usize, b: &usize| load[*a].total_cmp(&load[*b]);
+        let all = || 0..load.len();
+        samples.extend([all().min_by(by), all().max_by(by)].into_iter().flatten());
+        samples.sort_unstable();
+        samples.dedup();
+    }
+    Some(samples)
+}
+
 /// The recordings with as many samples as choices need: the same of each as [`thin`] keeps of the
 /// recording in its place in `like`.
 pub(super) fn few<'a>(recordings: &'a [Recording], like: &[Recording]) -> Cow<'a, [Recording]> {

@@ -3,16 +3,21 @@
 use crate::error::Result;
 use crate::model::Sign;
 use crate::recording::Recording;
-use crate::series::headings;
-use crate::series::usual_tolerance;
+use crate::series::coarse::hides_noise;
+use crate::series::noise::noise;
+use crate::series::{headings, usual_tolerance};
 use hysteron_core::Direction;
 
 /// Above this share no monotone model can follow the output. An ideal loop has 0, a symmetric
 /// butterfly loop 0.5.
 pub const AGAINST_INPUT: f64 = 0.1;
 
+/// Two readings hardly ever differ by twice as many deviations of their white noise.
+const DEVIATIONS: f64 = 3.0;
+
 /// The share of the output's path, from 0 to 1, on which it moves against the input, for outputs of
-/// that `sign`. Movements of up to 1 % of the range are noise, on input and output.
+/// that `sign`. Movements of up to 1 % of the range are noise, on input and output, and on the output
+/// those of up to three deviations of its white noise ([`noise`]).
 ///
 /// Butterfly loops, changing loads and rate dependence make this share large. Hysteresis does not.
 ///
@@ -30,7 +35,12 @@ pub const AGAINST_INPUT: f64 = 0.1;
 /// [`crate::Error::Recording`] for an invalid recording.
 pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     recording.check()?;
-    let tolerance = usual_tolerance(&recording.output);
+    // Where the input jumps, an answer cannot be told from noise.
+    let white = match hides_noise(&recording.input) {
+        true => 0.0,
+        false => noise(&recording.output),
+    };
+    let tolerance = usual_tolerance(&recording.output).max(DEVIATIONS * white);
     let headings = headings(&recording.input, usual_tolerance(&recording.input));
     let (mut with, mut against) = (0.0, 0.0);
     let mut held = recording.output[0];
@@ -50,4 +60,32 @@ pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     } else {
         0.0
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::series::test_series::gaussian;
+
+    /// The share for loops of an output with white noise, in shares of its range.
+    fn share(shape: fn(f64) -> f64, rate: f64, sigma: f64) -> f64 {
+        let input: Vec<f64> = (0..5000).map(|n| (f64::from(n) * rate).sin()).collect();
+        let pairs = input.iter().zip(gaussian(1, input.len()));
+        let output = pairs.map(|(x, e)| shape(*x) + sigma * e).collect();
+        way_against_input(&Recording::new(input, output).unwrap(), Sign::Positive).unwrap()
+    }
+
+    #[test]
+    fn noise_is_no_movement() {
+        for rate in [0.003, 0.02, 0.1] {
+            for sigma in [0.0, 0.003, 0.02, 0.05] {
+                let line = share(|x| 0.5 * x, rate, sigma);
+                assert!(line < 0.01, "{line} at {rate}, {sigma}");
+                let butterfly = share(|x| x * x, rate, sigma);
+                assert!(butterfly > 0.4, "{butterfly} at {rate}, {sigma}");
+            }
+        }
+    }
 }

@@ -27,27 +27,31 @@ pub(super) fn repair(
         Step::Auto => Some(DEVIATIONS),
         Step::Value(deviations) => Some(deviations),
     };
+    let mut outputs = None;
     if options.spikes == Step::Auto {
-        judge.ignore(wrong(&work.output, None, DEVIATIONS, true));
+        let suspect = wrong(&work.output, None, DEVIATIONS, true);
+        judge.ignore(suspect.clone());
+        outputs = Some(suspect);
     }
-    let mut of = |input: bool| {
-        let removed = deviations.map(|above| remove(work, input, options.spikes, above, judge));
+    let mut of = |input: bool, known: Option<Vec<usize>>| {
+        let how = options.spikes;
+        let removed = deviations.map(|above| remove(work, input, (how, above), known, judge));
         Repairs::new(&signs[usize::from(!input)], &removed.unwrap_or_default())
     };
     Some(Spikes {
         deviations,
-        input: of(true),
-        output: of(false),
+        input: of(true, None),
+        output: of(false, outputs),
     })
 }
 
 /// Replaces what was lost of one series. What is left to the data is taken with bursts and held
-/// readings, or with spikes alone, or not at all.
+/// readings, or with spikes alone, or not at all. What is lost with bursts may be `known`.
 fn remove(
     work: &mut Recording,
     input: bool,
-    how: Step,
-    deviations: f64,
+    (how, deviations): (Step, f64),
+    mut known: Option<Vec<usize>>,
     judge: &mut Judge<'_>,
 ) -> Vec<usize> {
     let kinds: &[bool] = match how {
@@ -56,10 +60,10 @@ fn remove(
     };
     let mut tried = Vec::new();
     for runs in kinds {
-        let found = match input {
+        let found = known.take().unwrap_or_else(|| match input {
             true => wrong(&work.input, Some(&work.output), deviations, *runs),
             false => wrong(&work.output, None, deviations, *runs),
-        };
+        });
         if found.is_empty() || found == tried {
             break;
         }

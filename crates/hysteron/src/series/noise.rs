@@ -5,7 +5,7 @@ const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
 /// With fewer differences than this there is no estimate.
 const FEWEST: usize = 8;
 /// Standard deviation of a Gaussian variable over the median of its absolute value.
-const SIGMA_PER_MEDIAN: f64 = 1.4826;
+pub(super) const SIGMA_PER_MEDIAN: f64 = 1.4826;
 
 /// The standard deviation of the white noise on `values`, in their unit. 0 for fewer than ten
 /// samples.
@@ -58,12 +58,6 @@ fn differences(values: &[f64], order: usize) -> impl Iterator<Item = f64> {
         })
     });
     all.skip(order)
-}
-
-/// A robust standard deviation: the median distance from zero, scaled for Gaussian noise.
-pub(crate) fn deviation_of(residuals: &mut [f64]) -> f64 {
-    residuals.iter_mut().for_each(|r| *r = r.abs());
-    SIGMA_PER_MEDIAN * median(residuals)
 }
 
 /// The smallest distance between two different values: the resolution of a reading with a fixed

@@ -28,6 +28,10 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
         let step = |values: &[f64]| (values[n] - values[n - 1]).abs();
         n > 0 && (step(input) > seams[0] || step(output) > seams[1])
     };
+    // Most series have none, and nothing is kept of them.
+    if !(1..len).any(is_seam) {
+        return Vec::new();
+    }
     // Where rows like these stood first, and where they stood last.
     let mut places: HashMap<[(u64, u64); SHORTEST], (usize, usize)> = HashMap::new();
     let mut found = Vec::new();

@@ -6,7 +6,7 @@
 //! 1968). A spike must also be beyond the samples on both sides of it, which a step or a turning
 //! point of the signal is not.
 
-use crate::series::noise::{deviation_of, median, noise};
+use crate::series::noise::{SIGMA_PER_MEDIAN, noise};
 use crate::series::range;
 
 /// Number of neighbours on either side. Eight in all are enough to outvote three wrong samples in a
@@ -63,19 +63,25 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<(usize, 
     let least = (deviations * sigma).max(floor);
     // The samples that are too far from the line.
     let mut off: Vec<Off> = Vec::new();
-    for (sample, window) in (REACH..).zip(values.windows(2 * REACH + 1)) {
-        if furthest(window) <= least {
+    let windows = values.len().saturating_sub(2 * REACH);
+    for first in (0..windows).step_by(LANES) {
+        // The last ones end with the series: a window may be looked at twice.
+        let begin = first.min(windows.saturating_sub(LANES));
+        let window = |lane: usize| &values[begin + lane..begin + lane + 2 * REACH + 1];
+        let lanes = first - begin..LANES.min(windows - begin);
+        if lanes.clone().all(|lane| furthest(window(lane)) <= least) {
             continue;
         }
-        let (residual, spread) = against_neighbours(window);
-        let threshold = (deviations * spread.max(sigma)).max(floor);
-        if residual.abs() > threshold {
-            let side = residual.signum();
-            off.push(Off {
-                sample,
-                side,
-                threshold,
-            });
+        let (residuals, spreads) = against_neighbours(|lane| window(lane.min(lanes.end - 1)));
+        for lane in lanes {
+            let threshold = (deviations * spreads[lane].max(sigma)).max(floor);
+            if residuals[lane].abs() > threshold {
+                off.push(Off {
+                    sample: begin + lane + REACH,
+                    side: residuals[lane].signum(),
+                    threshold,
+                });
+            }
         }
     }
     let mut removed = Vec::new();
@@ -131,24 +137,70 @@ fn furthest(window: &[f64]) -> f64 {
     (away + steepest * REACH as f64) * (1.0 + 1e-12)
 }
 
-/// The distance of the middle sample from the line through the others, and their deviation from
-/// that line.
-fn against_neighbours(window: &[f64]) -> (f64, f64) {
-    let mut others = [(0.0, 0.0); OTHERS];
-    for (n, other) in others.iter_mut().enumerate() {
-        let place = n + usize::from(n >= REACH);
-        *other = (place as f64 - REACH as f64, window[place]);
+/// So many windows are looked at together: the same few operations on each make one of a vector.
+const LANES: usize = 8;
+
+/// A number of each window.
+type Lanes = [f64; LANES];
+
+/// In each window, the distance of the middle sample from the line through the others, and their
+/// deviation from that line.
+fn against_neighbours<'a>(window: impl Fn(usize) -> &'a [f64]) -> (Lanes, Lanes) {
+    let place = |n: usize| n + usize::from(n >= REACH);
+    let at = |n: usize| place(n) as f64 - REACH as f64;
+    let series: [Lanes; OTHERS] = each(|n, lane| window(lane)[place(n)]);
+    let mut slopes = [[0.0; LANES]; PAIRS];
+    let pairs = (0..OTHERS).flat_map(|a| (a + 1..OTHERS).map(move |b| (a, b)));
+    for (slopes, (a, b)) in slopes.iter_mut().zip(pairs) {
+        *slopes = std::array::from_fn(|lane| (series[b][lane] - series[a][lane]) / (at(b) - at(a)));
     }
-    let mut slopes = [0.0; PAIRS];
-    let pairs = others.iter().enumerate();
-    let pairs = pairs.flat_map(|(n, a)| others[n + 1..].iter().map(move |b| (a, b)));
-    for (slope, ((a, at_a), (b, at_b))) in slopes.iter_mut().zip(pairs) {
-        *slope = (at_b - at_a) / (b - a);
+    let slope = middle(slopes);
+    let level = middle(each::<OTHERS>(|n, lane| {
+        series[n][lane] - slope[lane] * at(n)
+    }));
+    let spread = middle(each::<OTHERS>(|n, lane| {
+        (series[n][lane] - level[lane] - slope[lane] * at(n)).abs()
+    }));
+    let residual = std::array::from_fn(|lane| window(lane)[REACH] - level[lane]);
+    (residual, spread.map(|median| SIGMA_PER_MEDIAN * median))
+}
+
+/// Numbers by their place and lane.
+fn each<const N: usize>(of: impl Fn(usize, usize) -> f64) -> [Lanes; N] {
+    std::array::from_fn(|n| std::array::from_fn(|lane| of(n, lane)))
+}
+
+/// The median in each lane, of an even number of rows: the mean of the two middle ones. The rows are
+/// sorted by a network, the odd-even merge sort (Batcher 1968), which compares the same places
+/// whatever the numbers are.
+fn middle<const N: usize>(mut rows: [Lanes; N]) -> Lanes {
+    let mut merged = 1;
+    while merged < N {
+        let mut apart = merged;
+        while apart > 0 {
+            for start in (apart % merged..N - apart).step_by(2 * apart) {
+                for n in start..(start + apart).min(N - apart) {
+                    // Both within the same sequence that is merged.
+                    if n / (2 * merged) == (n + apart) / (2 * merged) {
+                        in_order(&mut rows, n, n + apart);
+                    }
+                }
+            }
+            apart /= 2;
+        }
+        merged *= 2;
     }
-    let slope = median(&mut slopes);
-    let level = median(&mut others.map(|(n, x)| x - slope * n));
-    let spread = deviation_of(&mut others.map(|(n, x)| x - level - slope * n));
-    (window[REACH] - level, spread)
+    std::array::from_fn(|lane| 0.5 * (rows[N / 2 - 1][lane] + rows[N / 2][lane]))
+}
+
+/// The smaller number of each lane to row `low`, the larger one to row `high`.
+fn in_order(rows: &mut [Lanes], low: usize, high: usize) {
+    let (a, b) = (rows[low], rows[high]);
+    for lane in 0..LANES {
+        let ascend = a[lane] <= b[lane];
+        rows[low][lane] = if ascend { a[lane] } else { b[lane] };
+        rows[high][lane] = if ascend { b[lane] } else { a[lane] };
+    }
 }
 
 #[cfg(test)]
@@ -186,6 +238,40 @@ mod tests {
                 .filter(untouched)
                 .all(|n| repaired[n] == spiked[n])
         );
+    }
+
+    /// Windows that are looked at together against each by itself, by medians of sorted numbers.
+    #[test]
+    fn windows_together_are_as_each_alone() {
+        let sorted_median = |mut values: Vec<f64>| {
+            values.sort_unstable_by(f64::total_cmp);
+            let half = values.len() / 2;
+            0.5 * (values[half - 1] + values[half])
+        };
+        let coarse = gaussian(9, 64).into_iter().map(f64::round);
+        let values: Vec<f64> = gaussian(8, 64).into_iter().chain(coarse).collect();
+        for first in 0..values.len() - 2 * REACH - LANES {
+            let window = |lane: usize| &values[first + lane..first + lane + 2 * REACH + 1];
+            let (residuals, spreads) = against_neighbours(window);
+            for lane in 0..LANES {
+                let place = |n: usize| n as f64 - REACH as f64;
+                let all = window(lane).iter().enumerate();
+                let others: Vec<(f64, f64)> = all
+                    .filter(|(n, _)| *n != REACH)
+                    .map(|(n, x)| (place(n), *x))
+                    .collect();
+                let pairs = (0..OTHERS).flat_map(|a| (a + 1..OTHERS).map(move |b| (a, b)));
+                let rise = |(a, b): (usize, usize)| {
+                    (others[b].1 - others[a].1) / (others[b].0 - others[a].0)
+                };
+                let slope = sorted_median(pairs.map(rise).collect());
+                let level = sorted_median(others.iter().map(|(n, x)| x - slope * n).collect());
+                let off = others.iter().map(|(n, x)| (x - level - slope * n).abs());
+                let spread = SIGMA_PER_MEDIAN * sorted_median(off.collect());
+                assert_eq!(residuals[lane], window(lane)[REACH] - level);
+                assert_eq!(spreads[lane], spread);
+            }
+        }
     }
 
     #[test]

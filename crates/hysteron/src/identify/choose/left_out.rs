@@ -2,10 +2,12 @@
 //! smoothness.
 
 use crate::error::{Error, Result};
+use crate::identify::changed::enough;
 use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::{Choice, FitOptions, Spacing};
+use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
-use crate::model::Smooth;
+use crate::model::{Sign, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::fair_range;
@@ -121,9 +123,17 @@ pub fn left_out(
 /// The output at every sample, from a fit to the samples that are kept.
 fn without(problem: &mut Problem<'_>, kept: &[f64]) -> Result<Vec<f64>> {
     let fitted = problem.solve(Some(kept), Progress::NONE)?;
+    let states = problem.predict(&fitted.solution)?;
+    Ok(outputs(problem, fitted.sign, states))
+}
+
+/// The outputs to what a model without offset and sign gives.
+fn outputs(problem: &Problem<'_>, sign: Sign, mut states: Vec<f64>) -> Vec<f64> {
     let offset = problem.options.offset.unwrap_or(0.0);
-    let states = problem.predict(&fitted.solution)?.into_iter();
-    Ok(states.map(|h| offset + fitted.sign.factor() * h).collect())
+    states
+        .iter_mut()
+        .for_each(|h| *h = offset + sign.factor() * *h);
+    states
 }
 
 /// The output at each sample of one recording, from the fit that left its fold out. Samples without
@@ -136,15 +146,13 @@ pub(crate) fn predicted_without(
     options: &FitOptions,
     fold: &[Option<usize>],
 ) -> Result<Vec<f64>> {
-    let mut problem = Problem::new(std::slice::from_ref(recording), options)?;
     let mut predicted = vec![0.0; recording.len()];
-    for f in 0..=fold.iter().copied().flatten().max().unwrap_or(0) {
-        let kept = |g: &Option<usize>| f64::from(g.is_some_and(|g| g != f));
-        let kept: Vec<f64> = fold.iter().map(kept).collect();
-        let outputs = without(&mut problem, &kept)?;
+    let last = fold.iter().copied().flatten().max().unwrap_or(0);
+    let kept = |f: usize, n: usize| f64::from(fold[n].is_some_and(|g| g != f));
+    each_kept(recording, options, last + 1, kept, |f, outputs| {
         let own = (0..predicted.len()).filter(|n| fold[*n].unwrap_or(0) == f);
         own.for_each(|n| predicted[n] = outputs[n]);
-    }
+    })?;
     Ok(predicted)
 }
 
@@ -158,6 +166,43 @@ pub(crate) fn predicted_from(
     options: &FitOptions,
     kept: &[f64],
 ) -> Result<Vec<f64>> {
-    let mut problem = Problem::new(std::slice::from_ref(recording), options)?;
-    without(&mut problem, kept)
+    let mut predicted = Vec::new();
+    each_kept(
+        recording,
+        options,
+        1,
+        |_, n| kept[n],
+        |_, outputs| predicted = outputs,
+    )?;
+    Ok(predicted)
+}
+
+/// Hands on the output at every sample from `count` fits, each to the samples that it has `kept`. Of a
+/// long recording the fits see as many samples as choices do.
+fn each_kept(
+    recording: &Recording,
+    options: &FitOptions,
+    count: usize,
+    kept: impl Fn(usize, usize) -> f64,
+    mut done: impl FnMut(usize, Vec<f64>),
+) -> Result<()> {
+    let all = std::slice::from_ref(recording);
+    let Some(samples) = enough(recording) else {
+        let mut problem = Problem::new(all, options)?;
+        for f in 0..count {
+            let kept: Vec<f64> = (0..recording.len()).map(|n| kept(f, n)).collect();
+            done(f, without(&mut problem, &kept)?);
+        }
+        return Ok(());
+    };
+    let few = [recording.picked(|series| samples.iter().map(|n| series[*n]).collect())];
+    let mut problem = Problem::new(&few, options)?;
+    let all = Experiment::new(all, options)?;
+    for f in 0..count {
+        let kept: Vec<f64> = samples.iter().map(|n| kept(f, *n)).collect();
+        let fitted = problem.solve(Some(&kept), Progress::NONE)?;
+        let states = problem.predict_over(&all, &fitted.solution)?;
+        done(f, outputs(&problem, fitted.sign, states));
+    }
+    Ok(())
 }
