@@ -24,6 +24,7 @@ mod frozen_learning;
 mod hold_out;
 mod identification;
 mod inverse_series;
+mod judged_twice;
 mod kept_start;
 mod mixture;
 mod parquet_copy;
