@@ -50,6 +50,9 @@ pub enum Doubt {
     Disagree {
         /// Each stretch of them.
         rows: Vec<Rows>,
+        /// The others, where these are one stretch too and nothing but their number tells which of
+        /// the two are wrong.
+        others: Option<Rows>,
         /// The error on the other rows of a model that has seen these too: a mean distance, in
         /// percent of the usual range of the output.
         with: f64,
@@ -90,6 +93,7 @@ impl fmt::Display for Doubt {
             }
             Self::Disagree {
                 rows,
+                others,
                 with,
                 without,
                 read,
@@ -104,9 +108,13 @@ impl fmt::Display for Doubt {
                 };
                 write!(
                     f,
-                    "rows {} disagree with the others: a model that sees them errs {with:.2} % of \
-                     the range on the others, {how} {without:.2} %{causes}",
-                    rows.collect::<Vec<_>>().join(" and ")
+                    "rows {} disagree with {}: a model that sees them errs {with:.2} % of the range \
+                     on the others, {how} {without:.2} %{causes}",
+                    rows.collect::<Vec<_>>().join(" and "),
+                    match others {
+                        Some(others) => format!("rows {others}, and either may be wrong"),
+                        None => "the others".to_owned(),
+                    }
                 )
             }
         }
@@ -154,7 +162,7 @@ impl Doubt {
         match &mut self {
             Self::Frozen { rows, .. } | Self::Gap { rows, .. } => move_on(rows),
             Self::Repeated { rows, of } => [rows, of].into_iter().for_each(move_on),
-            Self::Disagree { rows, .. } => rows.iter_mut().for_each(move_on),
+            Self::Disagree { rows, others, .. } => rows.iter_mut().chain(others).for_each(move_on),
         }
         self
     }
@@ -238,6 +246,7 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
         let percent = |error: f64| 100.0 * error / usual_span(output);
         found.extend(disagreement(recording).map(|found| Doubt::Disagree {
             rows: found.suspect.rows.iter().map(rows).collect(),
+            others: found.suspect.rest(recording.len()).map(|rest| rows(&rest)),
             with: percent(found.with),
             without: percent(found.without),
             read: found.suspect.way.map(|way| way.text(x, y)),

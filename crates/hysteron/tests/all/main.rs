@@ -18,6 +18,7 @@ mod broken;
 mod confidence;
 mod design;
 mod determined;
+mod either;
 mod evaluation;
 mod formats;
 mod frozen_learning;
