@@ -9,6 +9,7 @@ mod filtered_feedback;
 
 mod adaptation;
 mod adaptive_stages;
+mod advised;
 mod arrow_copy;
 mod batch;
 mod believed;
