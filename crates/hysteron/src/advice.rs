@@ -3,7 +3,7 @@
 use crate::error::{Place, Result};
 use crate::identify::{AGAINST_INPUT, MANY_OPEN, way_against_input};
 use crate::model::{Model, Outlier, Solver, Start, Surroundings};
-use crate::prepare::{replaced, settles};
+use crate::prepare::mended::{replaced, settles};
 use crate::recording::{Quantity, Recording, named};
 use crate::remedy::{Remedy, Setting, counted};
 use crate::rivals::wins;

@@ -16,7 +16,7 @@ mod explained;
 mod fill;
 mod judge;
 mod lag;
-mod mended;
+pub(crate) mod mended;
 mod misread;
 mod options;
 mod rate;
@@ -35,7 +35,6 @@ mod tests;
 
 pub use doubt::{Doubt, doubts};
 pub use judge::Judged;
-pub(crate) use mended::{replaced, settles};
 pub use options::{PrepareOptions, Step};
 pub use rate::{RateDependence, rate_dependence};
 pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};

@@ -1,7 +1,7 @@
 //! Which part of an error is in readings that are wrong.
 
 use super::cause::{Cause, WORTH};
-use crate::prepare::replaced;
+use crate::prepare::mended::replaced;
 use crate::recording::Recording;
 
 /// Readings that stand out or were held, if a good part of the squared error is in them.
