@@ -4,7 +4,7 @@ use crate::remedy::{say_doubts, text_of_advice};
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, StageSummary,
+    Columns, ConfidenceSummary, Criterion, Model, Plane, Recording, RecordingSummary, StageSummary,
     TableReader, Uncertain, Validation,
 };
 use serde_json::json;
@@ -70,10 +70,10 @@ fn summary(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
     for advice in hysteron::advice_before_fit(&recordings) {
         say(format_args!("{}", text_of_advice(&advice)));
     }
-    print(&recording_text(&summary))
+    print(&recording_text(&summary, &recordings))
 }
 
-fn recording_text(summary: &RecordingSummary) -> String {
+fn recording_text(summary: &RecordingSummary, recordings: &[Recording]) -> String {
     let mut rows = vec![text::row([
         "",
         "column",
@@ -93,14 +93,18 @@ fn recording_text(summary: &RecordingSummary) -> String {
         ]);
     }
     let time = summary.time.as_ref().map_or(String::new(), |time| {
+        let after = time.longest_step_before_sample;
+        let after = match recordings {
+            [only] => only.named(after - 1),
+            _ => format!("sample {after}"),
+        };
         format!(
-            "time {} to {} s, median step {} s, longest {} s (before sample {}), {} gaps, {} \
+            "time {} to {} s, median step {} s, longest {} s before {after}, {} gaps, {} \
              repeated\n",
             text::number(time.start),
             text::number(time.end),
             text::number(time.median_step),
             text::number(time.longest_step),
-            time.longest_step_before_sample,
             time.gaps,
             time.repeated
         )

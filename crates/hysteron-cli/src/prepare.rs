@@ -4,8 +4,8 @@ use crate::remedy::say_doubts;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Advice, Columns, Judged, LowPass, Model, Preparation, PrepareOptions, Progress, Quantity,
-    RateDependence, Recording, Repairs, SensorLag, Smoothed, Step, TableWriter,
+    Advice, Columns, Judged, LowPass, Model, Place, Preparation, PrepareOptions, Progress,
+    Quantity, RateDependence, Recording, Repairs, SensorLag, Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
@@ -180,6 +180,19 @@ fn judged_line(judged: &Judged, output: &Quantity) -> String {
     }
 }
 
+/// Where the samples that are listed stand in the file, if they have lines there.
+fn lines_of(repairs: &Repairs, recording: &Recording) -> String {
+    let places = repairs.first.iter().map(|n| recording.place(n - 1));
+    let lines = places.filter_map(|place| match place? {
+        Place::Line(line) => Some(line.to_string()),
+        Place::Row(_) => None,
+    });
+    match lines.collect::<Vec<_>>() {
+        lines if lines.is_empty() => String::new(),
+        lines => format!(" (lines {} of the file)", lines.join(" ")),
+    }
+}
+
 /// One line a step, and one for what it gained.
 fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
     let (input, output) = (&recording.input_quantity, &recording.output_quantity);
@@ -194,7 +207,7 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
         let of = |repairs: &Repairs, name: &str| match repairs.first.is_empty() {
             true => format!("none in {name}"),
             false => format!(
-                "{} in {name}{}, samples {}{}",
+                "{} in {name}{}, samples {}{}{}",
                 repairs.spikes + repairs.signs,
                 match repairs.signs {
                     0 => String::new(),
@@ -210,7 +223,8 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
                     " …"
                 } else {
                     ""
-                }
+                },
+                lines_of(repairs, recording),
             ),
         };
         format!(

@@ -1,8 +1,9 @@
 //! Fits a model while part of the data is held out, and tests it there beside simple rivals.
 
+use crate::advice::Advice;
 use crate::error::{Error, Result};
+use crate::identify::Fit;
 use crate::identify::kept::tell_errors;
-use crate::identify::{Advice, Fit};
 use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Recording, Split, split_each, split_ends};
 use crate::remedy::{Remedy, Setting};

@@ -24,6 +24,7 @@
 #![forbid(unsafe_code)]
 
 mod adapt;
+mod advice;
 mod batch;
 pub mod control;
 #[cfg(feature = "data")]
@@ -54,6 +55,7 @@ pub use adapt::{
     AdaptiveLoad, AutoOptions, Compared, Drift, DriftBasis, EstimatorOptions, Learner,
     OutcomeCounts, Refit, ShiftFound, Stuck, Window, adapt,
 };
+pub use advice::{Advice, advice, advice_before_fit};
 pub use batch::BatchModel;
 #[cfg(feature = "data")]
 pub use data::{
@@ -82,10 +84,9 @@ pub use hysteron_core::{
 #[cfg(feature = "files")]
 pub use hysteron_files::Destination;
 pub use identify::{
-    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
-    FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, advice,
-    advice_before_fit, cross_validate, excitation, left_out, plane_of, usual_start,
-    way_against_input,
+    AGAINST_INPUT, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
+    FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, cross_validate,
+    excitation, left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, ConstantSummary, LoadSummary, ModelSummary, RecordingSummary, Series,

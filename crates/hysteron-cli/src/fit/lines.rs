@@ -98,11 +98,9 @@ fn outliers_line(fit: &FitSummary, model: &Model, recordings: &[Recording]) -> O
             false => format!("recording {}, ", outlier.recording + 1),
         };
         let by = model.output.text(outlier.by);
-        let place = recordings
-            .get(outlier.recording)
-            .and_then(|recording| recording.place(outlier.sample))
-            .map_or_else(String::new, |place| format!(" ({place})"));
-        format!("{recording}sample {}{place} by {by}", outlier.sample + 1)
+        let own = recordings.get(outlier.recording);
+        let named = own.map_or_else(String::new, |own| own.named(outlier.sample));
+        format!("{recording}{named} by {by}")
     });
     let named = named.collect::<Vec<_>>().join("; ");
     let more = if count > NAMED { "; …" } else { "" };

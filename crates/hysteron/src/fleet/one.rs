@@ -3,10 +3,11 @@
 use super::choice::FleetShared;
 use super::options::FleetOptions;
 use super::row::FleetRow;
+use crate::advice::advice;
 use crate::data::Note;
 use crate::error::{Error, Result};
 use crate::hold_out::{HeldOut, fit_holding_out};
-use crate::identify::{Fit, advice};
+use crate::identify::Fit;
 use crate::model::Model;
 use crate::prepare::{Doubt, doubts, prepare, rate_dependence};
 use crate::progress::Progress;

@@ -4,9 +4,8 @@
 //! problem. `delay` finds the dead time and `outliers` are found, both first. `choose` selects
 //! levels and smoothness. `doubt` estimates how well the data determine the weights. `stages`
 //! identifies the thermal body in front of the operators. `chosen` hands choices on to other fits.
-//! `advice` and `monotone` warn about data that the model cannot follow.
+//! `monotone` tells data that the model cannot follow.
 
-mod advice;
 mod changed;
 mod choose;
 mod chosen;
@@ -27,9 +26,9 @@ mod stages;
 mod weights;
 mod words;
 
-pub use advice::{Advice, advice, advice_before_fit};
 pub use choose::left_out::{LeftOut, left_out};
 pub(crate) use choose::left_out::{predicted_from, predicted_without};
+pub(crate) use choose::start::MANY_OPEN;
 pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
 pub use chosen::Chosen;

@@ -239,8 +239,7 @@ impl LoadDependence {
     /// [`Error::Fit`] for a load further outside, because weights could be negative there.
     pub fn factors(&self, load: f64) -> Result<Vec<f64>> {
         let (low, high) = self.range;
-        let slack = NOISE * (high - low);
-        if !(load >= low - slack && load <= high + slack) {
+        if !self.knows(load) {
             return Err(Error::Fit(format!(
                 "the {} {load} is outside the range {low} to {high} that the model was identified \
                  at",
@@ -249,6 +248,13 @@ impl LoadDependence {
         }
         let s = ((load - low) / (high - low)).clamp(0.0, 1.0);
         Ok(bernstein(self.parts.len() - 1, s))
+    }
+
+    /// Whether a load is in the range, or hardly outside.
+    pub(super) fn knows(&self, load: f64) -> bool {
+        let (low, high) = self.range;
+        let slack = NOISE * (high - low);
+        load >= low - slack && load <= high + slack
     }
 
     /// Offset and weights at a load.

@@ -93,6 +93,9 @@ impl Model {
         state: &mut State,
         recording: &Recording,
     ) -> Result<(Vec<f64>, ClippedCount)> {
+        if let Some(load) = &self.load {
+            load.check(recording)?;
+        }
         let mut output = vec![0.0; recording.len()];
         let around = Surroundings::from_recording(self, recording);
         let clipped = self.run_in(state, &recording.input, around, &mut output)?;

@@ -4,9 +4,8 @@
 //! units, or with their columns exchanged, are told by what they do to a model of the others.
 
 use super::disagree::disagreement;
-use super::judge::Judge;
-use super::options::{PrepareOptions, Step};
-use super::single;
+use super::mended::without_wrong;
+use super::options::Step;
 use crate::error::{Error, Result};
 use crate::recording::{Recording, Rows, turned_in_gaps};
 use crate::remedy::{Remedy, Setting};
@@ -50,6 +49,9 @@ pub enum Doubt {
     Disagree {
         /// Each stretch of them.
         rows: Vec<Rows>,
+        /// The others, where these are one stretch too and nothing but their number tells which of
+        /// the two are wrong.
+        others: Option<Rows>,
         /// The error on the other rows of a model that has seen these too: a mean distance, in
         /// percent of the usual range of the output.
         with: f64,
@@ -90,6 +92,7 @@ impl fmt::Display for Doubt {
             }
             Self::Disagree {
                 rows,
+                others,
                 with,
                 without,
                 read,
@@ -104,9 +107,13 @@ impl fmt::Display for Doubt {
                 };
                 write!(
                     f,
-                    "rows {} disagree with the others: a model that sees them errs {with:.2} % of \
-                     the range on the others, {how} {without:.2} %{causes}",
-                    rows.collect::<Vec<_>>().join(" and ")
+                    "rows {} disagree with {}: a model that sees them errs {with:.2} % of the range \
+                     on the others, {how} {without:.2} %{causes}",
+                    rows.collect::<Vec<_>>().join(" and "),
+                    match others {
+                        Some(others) => format!("rows {others}, and either may be wrong"),
+                        None => "the others".to_owned(),
+                    }
                 )
             }
         }
@@ -154,7 +161,7 @@ impl Doubt {
         match &mut self {
             Self::Frozen { rows, .. } | Self::Gap { rows, .. } => move_on(rows),
             Self::Repeated { rows, of } => [rows, of].into_iter().for_each(move_on),
-            Self::Disagree { rows, .. } => rows.iter_mut().for_each(move_on),
+            Self::Disagree { rows, others, .. } => rows.iter_mut().chain(others).for_each(move_on),
         }
         self
     }
@@ -192,18 +199,7 @@ impl Doubt {
 /// [`Error::Recording`] for an invalid recording.
 pub fn doubts(recording: &Recording) -> Result<Vec<Doubt>> {
     recording.check()?;
-    Ok(beside_spikes(recording))
-}
-
-/// The doubts about a recording that may have spikes.
-fn beside_spikes(recording: &Recording) -> Vec<Doubt> {
-    let options = PrepareOptions {
-        spikes: Step::Auto,
-        ..PrepareOptions::all(Step::Off)
-    };
-    let mut mended = recording.clone();
-    single::repair(&mut mended, &options, &mut Judge::new(recording));
-    without_spikes(&mended)
+    Ok(without_spikes(&without_wrong(recording)))
 }
 
 /// The doubts about a recording whose spikes are gone.
@@ -238,6 +234,7 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
         let percent = |error: f64| 100.0 * error / usual_span(output);
         found.extend(disagreement(recording).map(|found| Doubt::Disagree {
             rows: found.suspect.rows.iter().map(rows).collect(),
+            others: found.suspect.rest(recording.len()).map(|rest| rows(&rest)),
             with: percent(found.with),
             without: percent(found.without),
             read: found.suspect.way.map(|way| way.text(x, y)),
@@ -249,7 +246,7 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
 /// Refuses a recording that cannot be believed. Spikes that are to stay are no reason.
 pub(super) fn refuse(recording: &Recording, spikes: Step) -> Result<()> {
     let found = match spikes {
-        Step::Off => beside_spikes(recording),
+        Step::Off => without_spikes(&without_wrong(recording)),
         _ => without_spikes(recording),
     };
     match found.first() {

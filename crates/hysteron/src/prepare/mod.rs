@@ -4,7 +4,8 @@
 //! makes equal time steps. `smooth` is the low-pass that removes the noise. `lag` undoes a sensor's
 //! lag. `band` removes false reversals of the input. Each step that is left to the data is a
 //! candidate: `judge` keeps it only if a model then errs less on data that it did not see. `rate`
-//! tests whether the material depends on rate. `report` records what was done.
+//! tests whether the material depends on rate. `report` records what was done, and `mended` tells
+//! what would be.
 
 mod alike;
 mod band;
@@ -15,6 +16,7 @@ mod explained;
 mod fill;
 mod judge;
 mod lag;
+pub(crate) mod mended;
 mod misread;
 mod options;
 mod rate;

@@ -15,8 +15,7 @@ use crate::error::Result;
 use crate::identify::{Fit, FitOptions};
 use crate::model::Surroundings;
 use crate::recording::Recording;
-use crate::series::NOISE;
-use crate::series::range;
+use crate::series::{NOISE, fair_range};
 use serde::Serialize;
 
 /// Number of time constants tried, from the mean step to a tenth of the whole length.
@@ -106,7 +105,7 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
     let series = [&recording.input, &modelled];
     let (r2_time, time_constant) = explained(&residual, series, time);
     let (r2_path, _) = explained(&residual, series, &path);
-    let (low, high) = range(&recording.output);
+    let (low, high) = fair_range(&recording.output);
     let mean_square = residual.iter().map(|r| r * r).sum::<f64>() / residual.len() as f64;
     let nrmse_percent = 100.0 * mean_square.sqrt() / (high - low);
     Ok(Some(RateDependence {

@@ -72,6 +72,10 @@ pub(super) fn resample(recording: &mut Recording, step: f64) -> Result<()> {
     recording.output = at_new_times(&recording.output);
     recording.load = recording.load.as_deref().map(at_new_times);
     recording.time = Some(time);
+    // These samples are no rows of the file.
+    if let Some(source) = &mut recording.source {
+        source.places = None;
+    }
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use super::report::{Repairs, Spikes};
 use super::sign;
 use crate::recording::Recording;
 use crate::series::lost::wrong;
-use crate::series::spikes::DEVIATIONS;
+use crate::series::spikes::usual_deviations;
 
 pub(super) fn repair(
     work: &mut Recording,
@@ -22,14 +22,15 @@ pub(super) fn repair(
     if options.signs {
         signs = [&mut work.input, &mut work.output].map(|values| sign::restore(values));
     }
+    let usual = usual_deviations(work.len());
     let deviations = match options.spikes {
         Step::Off => None,
-        Step::Auto => Some(DEVIATIONS),
+        Step::Auto => Some(usual),
         Step::Value(deviations) => Some(deviations),
     };
     let mut outputs = None;
     if options.spikes == Step::Auto {
-        let suspect = wrong(&work.output, None, DEVIATIONS, true);
+        let suspect = wrong(&work.output, None, usual, true);
         judge.ignore(suspect.clone());
         outputs = Some(suspect);
     }

@@ -48,6 +48,17 @@ impl Suspect {
             at_sight: false,
         }
     }
+
+    /// The others of `len` rows, if these are one stretch beside one stretch: two recordings, of
+    /// which either may be wrong. Of a channel that stands still it is known.
+    pub(super) fn rest(&self, len: usize) -> Option<Range<usize>> {
+        let stands_still = self.at_sight && self.way.is_none();
+        match &self.rows[..] {
+            [own] if !stands_still && own.start == 0 => Some(own.end..len),
+            [own] if !stands_still && own.end == len => Some(0..own.start),
+            _ => None,
+        }
+    }
 }
 
 /// The samples before which a series jumps.

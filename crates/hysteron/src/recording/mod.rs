@@ -22,6 +22,7 @@ pub(crate) use positions::Positions;
 #[cfg(feature = "data")]
 pub(crate) use positions::RUN;
 pub use rows::Rows;
+pub(crate) use rows::named;
 pub(crate) use speed::{ONE, one_speed};
 pub use split::{HoldOut, Split};
 pub(crate) use split::{split_each, split_ends};
@@ -132,7 +133,7 @@ pub struct Source {
     pub path: PathBuf,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
-    /// Where its samples stand in it, unless they are all of its rows in their order.
+    /// Where its samples stand in it, unless they count as its rows do.
     pub(crate) places: Option<Positions>,
 }
 
@@ -228,7 +229,8 @@ impl Recording {
         self.input.is_empty()
     }
 
-    /// Where in its file a sample stands, counted from 0. `None` where samples count as rows do: no
+    /// Where in its file a sample stands, counted from 0: a line of text counts from the first line of
+    /// the file, so with its header. `None` where samples count as the rows of a binary file do: no
     /// row was left out, and the file is one recording.
     #[must_use]
     pub fn place(&self, sample: usize) -> Option<Place> {

@@ -52,9 +52,10 @@ impl Positions {
         self.len = self.len.min(len);
     }
 
-    /// Whether each row follows the one before it in the file.
-    pub(crate) fn are_one_run(&self) -> bool {
-        self.runs.len() < 2
+    /// Whether the rows are numbered in the file as here, from 1 on. Lines never are: they count the
+    /// header too.
+    pub(crate) fn count_from_one(&self) -> bool {
+        matches!(self.runs[..], [] | [(0, Place::Row(1))])
     }
 
     /// The positions of rows that follow one another here.

@@ -5,6 +5,27 @@ use crate::error::Place;
 use std::fmt;
 use std::ops::Range;
 
+impl Recording {
+    /// A sample, counted from 0, as its user is told of it: counted from 1, and where it stands in
+    /// its file ([`Recording::place`]).
+    ///
+    /// ```
+    /// let recording = hysteron::Recording::new(vec![0.0, 1.0], vec![0.0, 2.0])?;
+    /// assert_eq!(recording.named(1), "sample 2"); // of a file: `sample 2 (line 3 of the file)`
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn named(&self, sample: usize) -> String {
+        named(sample + 1, self.place(sample))
+    }
+}
+
+/// A sample by its number, counted from 1, and where it stands in its file.
+pub(crate) fn named(number: usize, place: Option<Place>) -> String {
+    let place = place.map_or(String::new(), |place| format!(" ({place} of the file)"));
+    format!("sample {number}{place}")
+}
+
 /// Rows that follow one another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rows {

@@ -1,6 +1,6 @@
 //! Error measures between a measured and a modelled series.
 
-use crate::series::spread::fair_range;
+use crate::series::fair_range;
 use serde::{Deserialize, Serialize};
 
 /// The differences between a measured and a modelled series.
@@ -10,8 +10,8 @@ pub struct Errors {
     pub rmse: f64,
     /// Largest absolute difference, in the unit of the series.
     pub max_abs: f64,
-    /// `rmse` in percent of the measured range of the whole series, which single readings far from
-    /// all others do not set ([`crate::fair_range`]); `None` where that range is zero.
+    /// `rmse` in percent of the measured range of the whole series, which wrong readings do not set
+    /// ([`crate::fair_range`]); `None` where that range is zero.
     pub nrmse_percent: Option<f64>,
     /// Number of samples compared.
     pub samples: usize,

@@ -101,10 +101,11 @@ pub(crate) fn wrong(
 /// is as right as a long one: none is wrong then.
 pub(crate) fn wrong_of_both(input: &[f64], output: &[f64]) -> [Vec<usize>; 2] {
     let mut right = input.to_vec();
-    let found = replaced(&mut right, Some(output), spikes::DEVIATIONS, true);
+    let deviations = spikes::usual_deviations(input.len());
+    let found = replaced(&mut right, Some(output), deviations, true);
     match goes_by_jumps(&right) {
         true => [Vec::new(), Vec::new()],
-        false => [found, wrong(output, None, spikes::DEVIATIONS, true)],
+        false => [found, wrong(output, None, deviations, true)],
     }
 }
 

@@ -4,11 +4,12 @@
 //! filter. `errors` compares two series. `noise` estimates white noise, and `coarse` tells series
 //! that jump from reading to reading. `spikes` finds isolated readings, `jumps` jumps and bursts of
 //! wrong readings, `lost` all readings that are wrong, `frozen` a channel that stands still, and
-//! `repeated` rows that come twice. `spread` gives range, mean and standard deviation. `runs` keeps
-//! values that change seldom.
+//! `repeated` rows that come twice. `spread` gives range, mean and standard deviation, `fair` the
+//! range that wrong readings do not set. `runs` keeps values that change seldom.
 
 pub(crate) mod coarse;
 mod errors;
+mod fair;
 pub mod filter;
 pub(crate) mod frozen;
 #[cfg(feature = "data")]
@@ -26,8 +27,10 @@ pub(crate) mod test_series;
 mod turning;
 
 pub use errors::Errors;
+pub use fair::fair_range;
+pub(crate) use fair::fair_range_of_all;
 pub(crate) use runs::Runs;
-pub use spread::{fair_range, mean_and_deviation, range};
-pub(crate) use spread::{fair_range_of_all, range_of_all};
+pub(crate) use spread::range_of_all;
+pub use spread::{mean_and_deviation, range};
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};
 pub(crate) use turning::{branch_spans, clear_branch_spans, clear_branches, different_branches};

@@ -27,6 +27,8 @@ pub enum Cause {
         share: f64,
         /// Their number.
         samples: usize,
+        /// Number of these samples that [`crate::prepare`] would mend.
+        replaced: usize,
     },
     /// The model's band, which should hold 95 % of the samples, holds much less of them.
     Elsewhere {

@@ -179,7 +179,7 @@ impl Verdict {
 
     /// The verdict on a model that was evaluated on `recordings`. If it was fitted to them, what its
     /// fit was tested on tells. If not, the rival is a straight line fitted to these recordings
-    /// themselves, which favours it. An evaluation that kept no series
+    /// themselves, which favours it; where they are what its fit held out, it is that of the fit. An evaluation that kept no series
     /// ([`crate::evaluate_errors`]) tells neither the worst sample nor the parts of the error.
     ///
     /// # Errors
@@ -237,6 +237,8 @@ impl Verdict {
         let fitted = model.fit.as_ref().map_or(0.0, |fit| fit.rmse);
         let is_as_fitted = |record: &Self| rmse <= tested::BEYOND * record.rmse.max(fitted);
         let record = Self::unjudged(model).filter(|_| was_fitted);
+        let fit = model.fit.as_ref();
+        let rival = fit.and_then(|fit| tested::rival_here(fit, &errors));
         let mut verdict = match record.filter(is_as_fitted) {
             Some(record) => record,
             None => Self {
@@ -249,7 +251,10 @@ impl Verdict {
                 percent: errors.nrmse_percent,
                 noise: 0.0,
                 inverse: None,
-                rival: line(recordings)?,
+                rival: match rival {
+                    None => line(recordings)?,
+                    rival => rival,
+                },
                 causes: Vec::new(),
                 worst: None,
                 has_time: false,

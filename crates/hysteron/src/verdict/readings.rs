@@ -1,6 +1,7 @@
 //! Which part of an error is in readings that are wrong.
 
 use super::cause::{Cause, WORTH};
+use crate::prepare::mended::replaced;
 use crate::recording::Recording;
 
 /// Readings that stand out or were held, if a good part of the squared error is in them.
@@ -15,16 +16,31 @@ pub(super) fn cause(recordings: &[Recording], modelled: &[f64]) -> Option<Cause>
         let modelled = &modelled[first..first + recording.len()];
         let squared = |n: usize| (recording.output[n] - modelled[n]).powi(2);
         total += (0..recording.len()).map(squared).sum::<f64>();
-        let mut wrong = recording.wrong_readings().concat();
-        wrong.sort_unstable();
-        wrong.dedup();
+        let wrong = at_once(recording.wrong_readings());
         within += wrong.iter().map(|n| squared(*n)).sum::<f64>();
         count += wrong.len();
         first += recording.len();
     }
     let share = within / total;
-    (share >= WORTH).then_some(Cause::Readings {
+    (share >= WORTH).then(|| Cause::Readings {
         share,
         samples: count,
+        replaced: recordings.iter().map(count_replaced).sum(),
     })
+}
+
+/// The samples that are in either list.
+fn at_once(lists: [Vec<usize>; 2]) -> Vec<usize> {
+    let mut samples = lists.concat();
+    samples.sort_unstable();
+    samples.dedup();
+    samples
+}
+
+/// How many wrong samples of a recording the preparation would mend.
+fn count_replaced(recording: &Recording) -> usize {
+    let wrong = at_once(recording.wrong_readings());
+    let replaced = at_once(replaced(recording));
+    let is_wrong = |sample: &&usize| wrong.binary_search(sample).is_ok();
+    replaced.iter().filter(is_wrong).count()
 }

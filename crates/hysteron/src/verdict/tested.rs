@@ -3,6 +3,7 @@
 use super::Basis;
 use crate::hold_out::{HeldOut, PART, RivalErrors};
 use crate::model::{Criterion, FitSummary};
+use crate::series::Errors;
 
 /// A curve is found after the plane was chosen. This entry of the record has the error on blocks left
 /// out with all stages.
@@ -68,6 +69,21 @@ impl Tested {
             },
         }
     }
+}
+
+/// Errors that differ by less than this share are those of the same samples.
+const SAME: f64 = 1e-9;
+
+/// The best rival beside a model that was tested on these very samples, as its errors tell: rivals
+/// that were fitted to what the model was. Who evaluates it there again has no other verdict.
+pub(super) fn rival_here(fit: &FitSummary, errors: &Errors) -> Option<(String, f64)> {
+    let held_out = HeldOut::from_record(fit.other.get("hold_out")?)?;
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+    let model = &held_out.model;
+    let is_here = model.samples == errors.samples
+        && near(model.rmse, errors.rmse)
+        && near(model.max_abs, errors.max_abs);
+    best_of(&held_out.rivals).filter(|_| is_here)
 }
 
 /// Whether the fit was tested on another recording, and not on a part of one that it saw.

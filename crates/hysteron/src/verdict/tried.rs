@@ -13,13 +13,61 @@ pub(super) struct Tried {
 
 impl Tried {
     pub(super) fn by(model: &Model, recordings: &[Recording]) -> Self {
-        let looked_for = |fit: &FitSummary| fit.other.contains_key(AFTER);
+        // A lag alone may have been looked for.
+        let looked_for =
+            |fit: &FitSummary| fit.other.get(AFTER).is_some_and(|it| it["creep"] == true);
         Self {
-            creep: model.fit.as_ref().is_some_and(looked_for),
+            creep: !model.creep().is_empty() || model.fit.as_ref().is_some_and(looked_for),
             thermal: model.thermal.is_some(),
             sensor_lag: recordings
                 .iter()
                 .any(|recording| recording.undone.is_some()),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::identify::{Choice, Fit};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    /// A play, at several speeds, whose output comes late.
+    fn late(seed: u64) -> Recording {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut share = || f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut input = vec![20.0_f64];
+        for n in 0..40 {
+            let last = input[input.len() - 1];
+            let end = if n % 2 == 0 { 55.0 } else { 20.0 } + 25.0 * share();
+            let count = ((end - last).abs() / [0.4, 0.8, 1.6][n % 3]).ceil();
+            input.extend((1..=count as i32).map(|k| last + (end - last) * f64::from(k) / count));
+        }
+        let (mut rest, mut output) = (20.0_f64, 20.0);
+        let follow = |x: &f64| {
+            rest = rest.clamp(x - 5.0, x + 5.0);
+            output += (rest - output) / 5.0;
+            output + 0.01 * (share() - 0.5)
+        };
+        let output = input.iter().map(follow).collect();
+        let mut recording = Recording::new(input, output).unwrap();
+        recording.time = Some((0..recording.len()).map(|n| n as f64).collect());
+        recording
+    }
+
+    #[test]
+    fn creep_was_tried_only_where_it_was_asked_for() {
+        for seed in 0..2 {
+            let recording = late(seed);
+            let model = Fit::new().bootstrap(0).run(&recording).unwrap();
+            assert!(model.lag() > 0.0, "seed {seed}");
+            let recordings = std::slice::from_ref(&recording);
+            assert!(!Tried::by(&model, recordings).creep, "seed {seed}");
+            let asked = Fit::new().bootstrap(0).creep(Choice::Auto);
+            let model = asked.run(&recording).unwrap();
+            assert!(Tried::by(&model, recordings).creep, "seed {seed}");
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
+use crate::advice::remedy_of_readings;
 use crate::model::band_name;
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting, counted};
@@ -122,7 +123,7 @@ impl Verdict {
                 "{:.1} % of the inputs are outside the range that the model knows",
                 100.0 * share
             ),
-            Cause::Readings { share, samples } => format!(
+            Cause::Readings { share, samples, .. } => format!(
                 "{:.0} % of the squared error is in {} out of line with neighbours or held",
                 100.0 * share,
                 counted(*samples, "reading")
@@ -327,10 +328,9 @@ impl Verdict {
                 "average the readings, or use {}, whose steps are taken only where they help",
                 [Setting::on("prepare")],
             ),
-            Some(Cause::Readings { .. }) => Remedy::new(
-                "use {}, which replaces them if that helps",
-                [Setting::on("prepare")],
-            ),
+            Some(Cause::Readings {
+                samples, replaced, ..
+            }) => remedy_of_readings(*samples, *replaced),
             Some(Cause::LagLeft { .. }) => Remedy::new(
                 "undo it here too, with {} and that time constant",
                 [Setting::any("sensor-lag")],

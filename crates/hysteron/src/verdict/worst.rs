@@ -2,7 +2,7 @@
 
 use crate::error::Place;
 use crate::model::Outlier;
-use crate::recording::Recording;
+use crate::recording::{Recording, named};
 use serde::Serialize;
 
 /// The sample with the largest error.
@@ -28,7 +28,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Which sample it is, in words: `recording 2, sample 124 (line 130)`, counted from 1.
+    /// Which sample it is, in words: `recording 2, sample 124 (line 130 of the file)`, counted from 1.
     #[must_use]
     pub fn named(&self) -> String {
         let recording = match (&self.file, self.recording) {
@@ -36,12 +36,7 @@ impl Worst {
             (None, 0) => String::new(),
             (None, number) => format!("recording {}, ", number + 1),
         };
-        let place = self.place.map(|place| format!(" ({place})"));
-        format!(
-            "{recording}sample {}{}",
-            self.sample + 1,
-            place.unwrap_or_default()
-        )
+        format!("{recording}{}", named(self.sample + 1, self.place))
     }
 }
 

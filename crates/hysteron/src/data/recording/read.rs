@@ -271,7 +271,8 @@ fn read_parts(
     let notes = remarks.chain(of_rows).collect();
     let others = samples.others.take();
     let source = table.sha256()?.map(|sha256| Source::new(path, sha256));
-    let plain = samples.places.are_one_run() && starts.is_empty();
+    // Samples count as the rows of the file do: nothing is to be told.
+    let plain = samples.places.count_from_one() && starts.is_empty();
     let ends = starts.iter().skip(1).copied().chain([samples.places.len()]);
     let mut begin = 0;
     let mut segments = Vec::new();

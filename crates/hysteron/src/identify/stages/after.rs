@@ -21,6 +21,8 @@ pub(super) struct Report {
     pub(super) without: f64,
     /// The same with the creep and the lag taken.
     pub(super) with: f64,
+    /// Whether creep was looked for, and not a lag alone.
+    pub(super) creep: bool,
 }
 
 /// Looks for the creep and the lag that are asked for.
@@ -65,5 +67,11 @@ pub(super) fn find(
         Some(best) => (best.after, best.left_out),
         None => (After::default(), without),
     };
-    Ok((after, Report { without, with }))
+    let creep = options.creep != Choice::Fixed(0);
+    let report = Report {
+        without,
+        with,
+        creep,
+    };
+    Ok((after, report))
 }

@@ -11,7 +11,7 @@ use crate::identify::weights::problem::Problem;
 use crate::model::{Bend, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::range;
+use crate::series::{fair_range, range};
 use serde::Serialize;
 
 /// Each recording is divided into this many blocks; those with an odd number are left out first,
@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
             let each = sums.iter().enumerate().filter(|(n, _)| left_out(*n));
             squares += each.map(error).sum::<f64>();
         }
-        let (low, high) = range(&self.measured);
+        let (low, high) = fair_range(&self.measured);
         Ok(100.0 * (squares / self.measured.len() as f64).sqrt() / (high - low))
     }
 

@@ -60,6 +60,7 @@ pub(super) fn find(
     let report = Report {
         without: without.left_out,
         with: with.left_out,
+        creep: false,
     };
     let worth = match with.after.lag() > LONG * search.step {
         true => LONG_WORTH,

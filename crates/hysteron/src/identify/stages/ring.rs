@@ -16,7 +16,7 @@ use crate::identify::weights::problem::Problem;
 use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::range;
+use crate::series::fair_range;
 use serde::Serialize;
 
 /// Each recording is divided into this many blocks; those with an odd number are left out first,
@@ -176,7 +176,7 @@ fn judged(
             *squares += left_out.map(|((h, y), _)| (h - y).powi(2)).sum::<f64>();
         }
     }
-    let (low, high) = range(&search.measured);
+    let (low, high) = fair_range(&search.measured);
     let count = search.measured.len() as f64;
     let [without, with] = squares.map(|sum| 100.0 * (sum / count).sqrt() / (high - low));
     let worth = with < (1.0 - WORTH) * without;
@@ -196,7 +196,7 @@ fn explains(
     let mut search = Search::new(recordings, options, &clock, progress)?;
     let still = search.still(None)?;
     let (_, _, swung) = search.swung(ring, None, &still)?;
-    let (low, high) = range(&search.measured);
+    let (low, high) = fair_range(&search.measured);
     let count = search.measured.len() as f64;
     let [without, with] = [still, swung].map(|outputs| {
         let squares = left(&outputs, &search.measured, None);

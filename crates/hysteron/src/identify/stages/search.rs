@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::coarse::hides_noise;
 use crate::series::noise::noise;
-use crate::series::{range, range_of_all};
+use crate::series::{fair_range, fair_range_of_all, range};
 
 /// Each recording is divided into this many blocks of time; those with an odd number are left out
 /// first, then the others.
@@ -103,7 +103,7 @@ pub(super) fn fine(options: &FitOptions, open: Open) -> FitOptions {
 
 /// The white noise of the outputs, in percent of their range, as far as it can be told.
 pub(super) fn noise_percent(recordings: &[Recording]) -> f64 {
-    let (low, high) = range_of_all(recordings.iter().map(|recording| &recording.output));
+    let (low, high) = fair_range_of_all(recordings.iter().map(|recording| &recording.output));
     let told = recordings
         .iter()
         .filter(|recording| !hides_noise(&recording.input));
@@ -346,7 +346,7 @@ impl<'a> Search<'a> {
                 .map(|((h, y), _)| (h - y).powi(2))
                 .sum::<f64>();
         }
-        let (low, high) = range(&measured);
+        let (low, high) = fair_range(&measured);
         Ok(100.0 * (squares / measured.len() as f64).sqrt() / (high - low))
     }
 }

@@ -1,10 +1,10 @@
 //! Warnings about a fit: signs in the data that the model may not be what the user expects.
 
 use crate::error::{Place, Result};
-use crate::identify::choose::start::MANY_OPEN;
-use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
+use crate::identify::{AGAINST_INPUT, MANY_OPEN, way_against_input};
 use crate::model::{Model, Outlier, Solver, Start, Surroundings};
-use crate::recording::{Quantity, Recording};
+use crate::prepare::mended::{replaced, settles};
+use crate::recording::{Quantity, Recording, named};
 use crate::remedy::{Remedy, Setting, counted};
 use crate::rivals::wins;
 use crate::series::noise::noise;
@@ -47,6 +47,8 @@ pub enum Advice {
         real: usize,
         /// Standard deviation of the input's noise, in its unit.
         noise: f64,
+        /// Whether [`crate::prepare`] would remove them.
+        removed: bool,
     },
     /// Readings stand out from their neighbours, or were held while the series moved on. Those of
     /// the output that the fit found as outliers are not among them.
@@ -59,6 +61,8 @@ pub enum Advice {
         first: usize,
         /// Where that stands in its file, if rows count otherwise there.
         place: Option<Place>,
+        /// Number of these readings that [`crate::prepare`] would replace.
+        replaced: usize,
     },
     /// There are hardly more samples than operators: most weights follow from the prior.
     FewData {
@@ -108,7 +112,9 @@ impl fmt::Display for Advice {
                 "on what was left out, {name} errs {rival:.2} % of the range and the model \
                  {model:.2} %: the data do not determine the model, or it cannot follow them"
             ),
-            Self::FalseReversals { all, real, noise } => write!(
+            Self::FalseReversals {
+                all, real, noise, ..
+            } => write!(
                 f,
                 "the input reverses {all} times, but only {real} times by more than its noise of \
                  {noise:.3}: the others bend the model"
@@ -118,15 +124,18 @@ impl fmt::Display for Advice {
                 samples,
                 first,
                 place,
-            } => {
-                let place = place.map_or(String::new(), |place| format!(" ({place})"));
-                write!(
-                    f,
-                    "{} of {series} out of line with neighbours or held, the first is sample \
-                     {first}{place}: this bends the model",
-                    counted(*samples, "reading")
-                )
-            }
+                replaced,
+            } => write!(
+                f,
+                "{} of {series} out of line with neighbours or held, the first is {}{}",
+                counted(*samples, "reading"),
+                named(*first, *place),
+                // What a model is no better without may be right.
+                match replaced {
+                    0 => "",
+                    _ => ": this bends the model",
+                }
+            ),
             Self::FewData {
                 samples,
                 operators,
@@ -156,7 +165,7 @@ impl fmt::Display for Advice {
 }
 
 impl Advice {
-    /// Whether it warns of readings that [`crate::prepare`] mends, where that helps.
+    /// Whether it warns of readings that [`crate::prepare`] judges, and mends where that helps.
     #[must_use]
     pub fn is_cured_by_preparation(&self) -> bool {
         matches!(self, Self::Spikes { .. } | Self::FalseReversals { .. })
@@ -181,14 +190,17 @@ impl Advice {
                     Setting::word("solver", "ols"),
                 ],
             ),
+            Self::FalseReversals { removed: true, .. } => {
+                Remedy::new("use {}, which removes them", [Setting::on("prepare")])
+            }
             Self::FalseReversals { .. } => Remedy::new(
-                "use {}, which removes them if that helps",
-                [Setting::on("prepare")],
+                "record with less noise, or average the readings: preparation leaves these \
+                 reversals, as a model without them predicts no better",
+                [],
             ),
-            Self::Spikes { .. } => Remedy::new(
-                "use {}, which replaces them if that helps",
-                [Setting::on("prepare")],
-            ),
+            Self::Spikes {
+                samples, replaced, ..
+            } => remedy_of_readings(*samples, *replaced),
             Self::RivalWins { .. } | Self::FewData { .. } => Remedy::new(
                 "record more branches, and test the model on another recording",
                 [],
@@ -307,6 +319,23 @@ pub fn advice_before_fit(recordings: &[Recording]) -> Vec<Advice> {
         .collect()
 }
 
+/// What to do about wrong readings, of which the preparation would replace some.
+pub(crate) fn remedy_of_readings(samples: usize, replaced: usize) -> Remedy {
+    let prepare = [Setting::on("prepare")];
+    match replaced {
+        0 => Remedy::new(
+            "look at them in the file, and mend or remove there what is wrong: preparation leaves \
+             them, as a model without them predicts the others no better",
+            [],
+        ),
+        all if all >= samples => Remedy::new("use {}, which replaces them", prepare),
+        some => Remedy::new(
+            format!("use {{}}, which replaces {some} of them, and look at the others in the file"),
+            prepare,
+        ),
+    }
+}
+
 /// The `wrong` readings of each series of each recording, but for `outliers`.
 fn spikes(
     recordings: &[Recording],
@@ -320,17 +349,23 @@ fn spikes(
             outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
         };
         output.retain(|sample| !is_outlier(*sample));
-        let of = |found: Vec<usize>, quantity: &Quantity| {
+        let mended = match input.is_empty() && output.is_empty() {
+            true => Default::default(),
+            false => replaced(recording),
+        };
+        let of = |found: Vec<usize>, mended: &[usize], quantity: &Quantity| {
+            let is_mended = |sample: &&usize| mended.binary_search(sample).is_ok();
             found.first().map(|first| Advice::Spikes {
                 series: quantity.name.clone(),
                 samples: found.len(),
                 first: first + 1,
                 place: recording.place(*first),
+                replaced: found.iter().filter(is_mended).count(),
             })
         };
         let both = [
-            of(input, &recording.input_quantity),
-            of(output, &recording.output_quantity),
+            of(input, &mended[0], &recording.input_quantity),
+            of(output, &mended[1], &recording.output_quantity),
         ];
         both.into_iter().flatten()
     })
@@ -356,5 +391,10 @@ fn false_reversals(recording: &Recording) -> Option<Advice> {
     // Gaussian noise hardly ever reverses by more than six deviations.
     let tolerance = usual_tolerance(input).max(6.0 * noise);
     let real = branch_spans(input, tolerance).count();
-    (all > FALSE * real && noise > 0.0).then_some(Advice::FalseReversals { all, real, noise })
+    (all > FALSE * real && noise > 0.0).then(|| Advice::FalseReversals {
+        all,
+        real,
+        noise,
+        removed: settles(recording),
+    })
 }

@@ -1,0 +1,54 @@
+//! Of two parts of a recording that disagree, nothing tells which one is wrong.
+
+use hysteron::{Doubt, Recording, doubts};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Random branches through plays, with noise.
+fn loops(rng: &mut ChaCha8Rng) -> Recording {
+    let mut input = vec![0.0];
+    for k in 0..20 {
+        let from = *input.last().unwrap();
+        let to = rng.random_range(if k % 2 == 0 { 0.3..1.0 } else { -1.0..-0.3 });
+        input.extend((1..=100).map(|n| from + (to - from) * f64::from(n) / 100.0));
+    }
+    let mut rests = [0.0_f64; 3];
+    let output = input.iter().map(|x| {
+        for (rest, width) in rests.iter_mut().zip([0.05, 0.15, 0.3]) {
+            *rest = rest.clamp(x - width, x + width);
+        }
+        rests.iter().sum::<f64>() + 0.002 * rng.random_range(-1.0..1.0)
+    });
+    let output = output.collect();
+    Recording::new(input, output).unwrap()
+}
+
+#[test]
+fn two_parts_are_both_named_and_a_part_within_alone() {
+    for seed in 0..8 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let clean = loops(&mut rng);
+        let len = clean.len();
+        let cut = rng.random_range(len / 4..3 * len / 4);
+        let wrong = [0..cut, cut..len, len / 2..len / 2 + len / 5];
+        for (n, wrong) in wrong.into_iter().enumerate() {
+            let mut recording = clean.clone();
+            recording.output[wrong.clone()]
+                .iter_mut()
+                .for_each(|y| *y *= 25.4);
+            let found = doubts(&recording).unwrap();
+            let Some(Doubt::Disagree { rows, others, .. }) = found.first() else {
+                panic!("seed {seed}, {wrong:?}: {found:?}");
+            };
+            assert_eq!(others.is_some(), n < 2, "seed {seed}, {wrong:?}: {found:?}");
+            let named = rows.iter().chain(others);
+            // To a fortieth of the rows, where no jump tells.
+            let near = |a: usize, b: usize| a.abs_diff(b) <= len / 40;
+            let own = |(first, last)| near(first, wrong.start + 1) && near(last, wrong.end);
+            let mut named = named.map(|rows| (rows.first, rows.last));
+            assert!(named.any(own), "seed {seed}, {wrong:?}: {found:?}");
+            let said = found[0].to_string();
+            assert_eq!(said.contains("either may be wrong"), n < 2, "{said}");
+        }
+    }
+}
