@@ -238,8 +238,8 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         let outside = positions.iter().filter(|x| plane.clipped(**x).is_some());
         inputs += outside.count();
         samples += seen.len();
-        // A load that changes moves the output by itself, and so does what comes late: the test says
-        // nothing then. Nor does a wrong reading.
+        // A load that changes moves the output by itself, and so does what comes late: the test
+        // says nothing then. Nor does a wrong reading.
         let comes_late = model.without_body().is_timed() || !model.delay().is_none();
         if model.load.is_none() && !comes_late {
             let is_right = |n: usize| wrong.iter().all(|found| found.binary_search(&n).is_err());

@@ -103,8 +103,8 @@ impl HeldOut {
 /// If rows at the beginning or in the middle are held out, the state of the operators after them is
 /// not known. Then the start is [`Start::Unknown`], whatever `fit` says.
 ///
-/// Rows of several recordings are counted through all of them, one after the other. Where a part and
-/// other recordings are held out, the errors are over both.
+/// Rows of several recordings are counted through all of them, one after the other. Where a part
+/// and other recordings are held out, the errors are over both.
 ///
 /// ```
 /// use hysteron::{Fit, HoldOut, Recording, fit_holding_out};

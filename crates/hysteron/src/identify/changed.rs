@@ -50,16 +50,16 @@ fn kept(input: &[f64], stride: usize) -> Vec<usize> {
 }
 
 /// Some samples of a recording.
-fn at(recording: &Recording, kept: &[usize]) -> Recording {
+pub(super) fn at(recording: &Recording, kept: &[usize]) -> Recording {
     recording.picked(|series| kept.iter().map(|n| series[*n]).collect())
 }
 
-/// Choices see about so many samples of all recordings, or twice as many: the extremes. More of them
-/// tell candidates apart no better than their noise, and a pass over them takes longer.
+/// Choices see about so many samples of all recordings, or twice as many: the extremes. More of
+/// them tell candidates apart no better than their noise, and a pass over them takes longer.
 const ENOUGH: usize = 50_000;
 
-/// The samples of a recording that choices need, where it has more. The least and the largest load are
-/// among them, because weights are functions of the load between these.
+/// The samples of a recording that choices need, where it has more. The least and the largest load
+/// are among them, because weights are functions of the load between these.
 pub(super) fn enough(recording: &Recording) -> Option<Vec<usize>> {
     let stride = recording.len().div_ceil(ENOUGH);
     if stride <= 1 {

@@ -16,8 +16,8 @@ pub const AGAINST_INPUT: f64 = 0.1;
 const DEVIATIONS: f64 = 3.0;
 
 /// The share of the output's path, from 0 to 1, on which it moves against the input, for outputs of
-/// that `sign`. Movements of up to 1 % of the range are noise, on input and output, and on the output
-/// those of up to three deviations of its white noise ([`noise`]).
+/// that `sign`. Movements of up to 1 % of the range are noise, on input and output, and on the
+/// output those of up to three deviations of its white noise ([`noise`]).
 ///
 /// Butterfly loops, changing loads and rate dependence make this share large. Hysteresis does not.
 ///

@@ -44,8 +44,8 @@ impl LoadPart {
 /// What a load does, as curves over the load: piecewise linear between the loads given.
 ///
 /// The load shifts and scales the axis of the operators, `x = a(σ) · T − s(σ)`, and changes stroke
-/// and offset, `y = offset + o(σ) ± g(σ) · Σ μ γ`. Under stress a shape-memory alloy transforms at a
-/// higher temperature (Clausius and Clapeyron), and its stroke grows. Weights alone cannot follow
+/// and offset, `y = offset + o(σ) ± g(σ) · Σ μ γ`. Under stress a shape-memory alloy transforms at
+/// a higher temperature (Clausius and Clapeyron), and its stroke grows. Weights alone cannot follow
 /// the first, because they do not move along the axis.
 ///
 /// A curve that is empty has no effect.

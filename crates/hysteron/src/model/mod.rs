@@ -5,10 +5,10 @@
 //! are those of the stages around them, and `stages` hands them to the core. `delay` is the dead
 //! time in front. `at_load` is the model at one load. `state` moves a model sample by sample from
 //! its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it (`policy`
-//! says how). `late` tells what comes late, and `known_loads` which loads a
-//! model knows. `band` is the interval around the output, and `bounds` where it may really be. `file`
-//! reads and writes models; `summary`,
-//! `smooth`, `validation`, `confidence` and `excitation` are the record of the fit.
+//! says how). `late` tells what comes late, and `known_loads` which loads a model knows. `band` is
+//! the interval around the output, and `bounds` where it may really be. `file` reads and writes
+//! models; `summary`, `smooth`, `validation`, `confidence` and `excitation` are the record of the
+//! fit.
 
 mod actuator;
 mod at_load;

@@ -85,9 +85,9 @@ impl Model {
         self.run_in(state, input, Surroundings::default(), output)
     }
 
-    /// The outputs over a recording from `state`, and how many inputs were clipped. Whatever is said
-    /// of a model on a recording comes from here: the error of its fit, of `evaluate`, of what was
-    /// held out.
+    /// The outputs over a recording from `state`, and how many inputs were clipped. Whatever is
+    /// said of a model on a recording comes from here: the error of its fit, of `evaluate`, of what
+    /// was held out.
     pub(crate) fn run_over(
         &self,
         state: &mut State,

@@ -21,8 +21,8 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Doubt {
-    /// A series keeps one value, but for noise, while the other moves far; or exactly one for longer
-    /// than half a branch before it goes on elsewhere.
+    /// A series keeps one value, but for noise, while the other moves far; or exactly one for
+    /// longer than half a branch before it goes on elsewhere.
     Frozen {
         /// Name of the series that stands still.
         series: String,

@@ -52,12 +52,12 @@ use change::Change;
 use judge::Judge;
 
 /// Prepares a recording for [`crate::Fit`] and reports what was done, and what each step gained. It
-/// removes spikes, resamples and smooths if the noise requires it, undoes a sensor's lag on request,
-/// and removes false reversals of the input.
+/// removes spikes, resamples and smooths if the noise requires it, undoes a sensor's lag on
+/// request, and removes false reversals of the input.
 ///
 /// A step that is left to the data is taken only if it lowers the error on data that the model did
-/// not see. So a clean recording is not changed. All series of the result have the same length; only
-/// resampling changes it.
+/// not see. So a clean recording is not changed. All series of the result have the same length;
+/// only resampling changes it.
 ///
 /// ```
 /// use hysteron::{PrepareOptions, Progress, Recording, prepare};

@@ -1,6 +1,6 @@
-//! Rows that may disagree with the others: where the series jump, or the error of a model does; where
-//! a channel keeps one value; and, by concentration (Rousseeuw & Van Driessen 1999), where a model
-//! errs that was fitted to those blocks on which the model before erred least.
+//! Rows that may disagree with the others: where the series jump, or the error of a model does;
+//! where a channel keeps one value; and, by concentration (Rousseeuw & Van Driessen 1999), where a
+//! model errs that was fitted to those blocks on which the model before erred least.
 
 use super::judge::{apart, from_kept, mean};
 use super::misread::{JUMPS, Reading, readings};
@@ -16,8 +16,8 @@ pub(super) const BLOCKS: usize = 40;
 pub(super) const SUSPECT: f64 = 4.0;
 /// Blocks that disagree may have so many between them where they agree by chance.
 const BETWEEN: [usize; 3] = [0, 2, 5];
-/// Rounds of the concentration, and number of windows without which it begins. Each is of this share
-/// of the rows.
+/// Rounds of the concentration, and number of windows without which it begins. Each is of this
+/// share of the rows.
 const ROUNDS: usize = 4;
 const WINDOWS: usize = 5;
 pub(super) const WINDOW: f64 = 0.4;
@@ -72,8 +72,8 @@ fn ascending(mut cuts: Vec<usize>) -> Vec<usize> {
     cuts
 }
 
-/// The `jumps` of the series, and the sample before which the error of a model jumps furthest: a small
-/// slip of a sensor, which the series alone do not show.
+/// The `jumps` of the series, and the sample before which the error of a model jumps furthest: a
+/// small slip of a sensor, which the series alone do not show.
 pub(super) fn with_that_of_the_error(
     jumps: &[usize],
     recording: &Recording,
@@ -108,8 +108,8 @@ pub(super) fn of_the_series(
     found
 }
 
-/// Those that models tell, of which the first one, of all rows, `predicted`. Their ends are also moved
-/// to near `cuts`.
+/// Those that models tell, of which the first one, of all rows, `predicted`. Their ends are also
+/// moved to near `cuts`.
 pub(super) fn of_models(recording: &Recording, cuts: &[usize], predicted: &[f64]) -> Vec<Suspect> {
     let starts = [Some(predicted.to_vec()), without_a_window(recording)];
     let found = starts

@@ -229,9 +229,9 @@ impl Recording {
         self.input.is_empty()
     }
 
-    /// Where in its file a sample stands, counted from 0: a line of text counts from the first line of
-    /// the file, so with its header. `None` where samples count as the rows of a binary file do: no
-    /// row was left out, and the file is one recording.
+    /// Where in its file a sample stands, counted from 0: a line of text counts from the first line
+    /// of the file, so with its header. `None` where samples count as the rows of a binary file do:
+    /// no row was left out, and the file is one recording.
     #[must_use]
     pub fn place(&self, sample: usize) -> Option<Place> {
         let places = self.source.as_ref()?.places.as_ref()?;

@@ -52,8 +52,8 @@ impl Positions {
         self.len = self.len.min(len);
     }
 
-    /// Whether the rows are numbered in the file as here, from 1 on. Lines never are: they count the
-    /// header too.
+    /// Whether the rows are numbered in the file as here, from 1 on. Lines never are: they count
+    /// the header too.
     pub(crate) fn count_from_one(&self) -> bool {
         matches!(self.runs[..], [] | [(0, Place::Row(1))])
     }

@@ -52,8 +52,8 @@ pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
             let pairs = (0..len - n).take_while(|k| row(earlier + k) == row(n + k));
             pairs.count()
         };
-        // The rows go on where the earlier ones ended, or elsewhere. A block may be made of several,
-        // where one had been written into another before.
+        // The rows go on where the earlier ones ended, or elsewhere. A block may be made of
+        // several, where one had been written into another before.
         let block = |earlier: usize| {
             let count = same(earlier, n);
             let of = earlier..earlier + count;

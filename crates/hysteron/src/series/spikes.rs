@@ -20,8 +20,8 @@ pub(crate) const DEVIATIONS: f64 = 4.0;
 /// A reading is further from the line through eight others than from the right one: both err.
 const LINE: f64 = 1.1;
 
-/// The deviations from which on one of so many samples is a spike. The furthest of `n` readings with
-/// Gaussian noise is about `√(2 ln n)` deviations away, and is none.
+/// The deviations from which on one of so many samples is a spike. The furthest of `n` readings
+/// with Gaussian noise is about `√(2 ln n)` deviations away, and is none.
 pub(crate) fn usual_deviations(samples: usize) -> f64 {
     let furthest = (2.0 * (samples.max(1) as f64).ln()).sqrt();
     DEVIATIONS.max(LINE * furthest)
@@ -180,8 +180,8 @@ fn each<const N: usize>(of: impl Fn(usize, usize) -> f64) -> [Lanes; N] {
     std::array::from_fn(|n| std::array::from_fn(|lane| of(n, lane)))
 }
 
-/// The median in each lane, of an even number of rows: the mean of the two middle ones. The rows are
-/// sorted by a network, the odd-even merge sort (Batcher 1968), which compares the same places
+/// The median in each lane, of an even number of rows: the mean of the two middle ones. The rows
+/// are sorted by a network, the odd-even merge sort (Batcher 1968), which compares the same places
 /// whatever the numbers are.
 fn middle<const N: usize>(mut rows: [Lanes; N]) -> Lanes {
     let mut merged = 1;

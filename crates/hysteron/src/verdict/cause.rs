@@ -68,12 +68,14 @@ pub enum Cause {
         /// The speed, per second.
         speed: f64,
     },
-    /// What comes late in the model was found where the input had one speed, and this one has others.
+    /// What comes late in the model was found where the input had one speed, and this one has
+    /// others.
     OtherSpeed {
         /// The speed, per second.
         speed: f64,
     },
-    /// The model was fitted to inputs in which the lag of the sensor was undone, and here it is not.
+    /// The model was fitted to inputs in which the lag of the sensor was undone, and here it is
+    /// not.
     LagLeft {
         /// Its time constant, s.
         tau: f64,
@@ -116,8 +118,8 @@ const SEEN: f64 = 0.01;
 /// 0.6 % there, and 1.6 to 3.3 % on other paths.
 const FEW: usize = 8;
 
-/// With thirty points, the error on another recording was five times that on what was left out, which
-/// stood at the same ones; with 120 it was the same.
+/// With thirty points, the error on another recording was five times that on what was left out,
+/// which stood at the same ones; with 120 it was the same.
 const POINTS: usize = 60;
 
 /// At eight places, visited over and over, the error on a staircase with others was four to thirty

@@ -1,10 +1,10 @@
 //! Whether a model is good enough, for what, why it is not better, and what to do next.
 //!
 //! This file makes a [`Verdict`] of a fit or of an evaluation. `grade` is what a model is good for,
-//! and `judge` finds it. `tested` reads from the record of a fit what it was tested on; `parts` tells
-//! what an error consists of, `tried` what a fit has looked for, `readings` which of it is in readings that are wrong, `worst` where it
-//! is largest, and `cause` what is behind it. `words` says
-//! all of it in sentences. `serial` writes it.
+//! and `judge` finds it. `tested` reads from the record of a fit what it was tested on; `parts`
+//! tells what an error consists of, `tried` what a fit has looked for, `readings` which of it is in
+//! readings that are wrong, `worst` where it is largest, and `cause` what is behind it. `words`
+//! says all of it in sentences. `serial` writes it.
 
 mod cause;
 mod grade;
@@ -177,10 +177,11 @@ impl Verdict {
         Ok(verdict)
     }
 
-    /// The verdict on a model that was evaluated on `recordings`. If it was fitted to them, what its
-    /// fit was tested on tells. If not, the rival is a straight line fitted to these recordings
-    /// themselves, which favours it; where they are what its fit held out, it is that of the fit. An evaluation that kept no series
-    /// ([`crate::evaluate_errors`]) tells neither the worst sample nor the parts of the error.
+    /// The verdict on a model that was evaluated on `recordings`. If it was fitted to them, what
+    /// its fit was tested on tells. If not, the rival is a straight line fitted to these recordings
+    /// themselves, which favours it; where they are what its fit held out, it is that of the fit.
+    /// An evaluation that kept no series ([`crate::evaluate_errors`]) tells neither the worst
+    /// sample nor the parts of the error.
     ///
     /// # Errors
     /// [`crate::Error::Recording`] for an invalid recording, or none.

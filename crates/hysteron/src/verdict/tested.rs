@@ -5,8 +5,8 @@ use crate::hold_out::{HeldOut, PART, RivalErrors};
 use crate::model::{Criterion, FitSummary};
 use crate::series::Errors;
 
-/// A curve is found after the plane was chosen. This entry of the record has the error on blocks left
-/// out with all stages.
+/// A curve is found after the plane was chosen. This entry of the record has the error on blocks
+/// left out with all stages.
 const CURVE: &str = "curve";
 
 /// A fit whose error on what it saw is so many times that on what was left out has a stage that was

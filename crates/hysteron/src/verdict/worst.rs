@@ -28,7 +28,8 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Which sample it is, in words: `recording 2, sample 124 (line 130 of the file)`, counted from 1.
+    /// Which sample it is, in words: `recording 2, sample 124 (line 130 of the file)`, counted from
+    /// 1.
     #[must_use]
     pub fn named(&self) -> String {
         let recording = match (&self.file, self.recording) {

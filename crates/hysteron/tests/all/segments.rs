@@ -135,8 +135,8 @@ fn a_table_of_segments_is_as_many_recordings() {
     }
 }
 
-/// What was learned goes on, and the operators start anew: else the model would err at the beginning
-/// of each recording.
+/// What was learned goes on, and the operators start anew: else the model would err at the
+/// beginning of each recording.
 #[test]
 fn an_adaptation_goes_on_through_segments() {
     let mut rng = ChaCha8Rng::seed_from_u64(30);

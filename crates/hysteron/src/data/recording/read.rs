@@ -14,8 +14,8 @@ use bytes::Bytes;
 use std::path::Path;
 
 impl Recording {
-    /// Reads a recording from a CSV, Parquet, Arrow or MATLAB file. The path `-` is CSV from standard
-    /// input.
+    /// Reads a recording from a CSV, Parquet, Arrow or MATLAB file. The path `-` is CSV from
+    /// standard input.
     ///
     /// **CSV.** Cells are separated by commas, semicolons or tabs. Numbers have a decimal point, or
     /// a decimal comma if commas do not separate cells. A row of units may follow the header. Lines
@@ -33,8 +33,8 @@ impl Recording {
     ///
     /// Timestamps and seconds since 1970 become seconds from the first row.
     ///
-    /// **Logs** of `hysteron run` and `track`: rows whose reading the loop did not believe (missing, a
-    /// spike, stuck) are left out.
+    /// **Logs** of `hysteron run` and `track`: rows whose reading the loop did not believe
+    /// (missing, a spike, stuck) are left out.
     ///
     /// The notes tell what was assumed and repaired, and where the time has gaps. A recording is
     /// one history: [`Recording::read_segments`] reads a table of several.

@@ -2,7 +2,7 @@
 //! smoothness.
 
 use crate::error::{Error, Result};
-use crate::identify::changed::enough;
+use crate::identify::changed::{at, enough};
 use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::{Choice, FitOptions, Spacing};
 use crate::identify::weights::experiment::Experiment;
@@ -177,8 +177,8 @@ pub(crate) fn predicted_from(
     Ok(predicted)
 }
 
-/// Hands on the output at every sample from `count` fits, each to the samples that it has `kept`. Of a
-/// long recording the fits see as many samples as choices do.
+/// Hands on the output at every sample from `count` fits, each to the samples that it has `kept`.
+/// Of a long recording the fits see as many samples as choices do.
 fn each_kept(
     recording: &Recording,
     options: &FitOptions,
@@ -195,7 +195,7 @@ fn each_kept(
         }
         return Ok(());
     };
-    let few = [recording.picked(|series| samples.iter().map(|n| series[*n]).collect())];
+    let few = [at(recording, &samples)];
     let mut problem = Problem::new(&few, options)?;
     let all = Experiment::new(all, options)?;
     for f in 0..count {

@@ -1,8 +1,8 @@
 //! Identifies the output curve behind the operators, where it predicts parts of the recordings that
 //! were left out.
 //!
-//! A curve is worth most where the weights are told little: with weights that depend on the width of
-//! an operator alone it is a two-sided Prandtl-Ishlinskii model (Kuhnen 2003). So curve and
+//! A curve is worth most where the weights are told little: with weights that depend on the width
+//! of an operator alone it is a two-sided Prandtl-Ishlinskii model (Kuhnen 2003). So curve and
 //! smoothness along the diagonal are chosen together.
 
 use crate::error::{Error, Result};
@@ -27,8 +27,8 @@ const MOST: usize = 100;
 /// Pieces of a curve that are tried.
 const PIECES: [usize; 2] = [5, 8];
 
-/// Strengths along the diagonal that are tried beside the one chosen. With the last ones the weights
-/// depend on little but the width.
+/// Strengths along the diagonal that are tried beside the one chosen. With the last ones the
+/// weights depend on little but the width.
 const ALONG: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 
 /// Turns between weights and curve. Further ones change little.
@@ -165,8 +165,8 @@ impl<'a> Search<'a> {
     }
 
     /// A curve fitted in turn with the weights, and the recordings with what the operators have to
-    /// give in front of it: the curve's slope makes the problem of the weights linear (Gauss-Newton).
-    /// The best of all rounds. Without pieces the recordings as they are.
+    /// give in front of it: the curve's slope makes the problem of the weights linear
+    /// (Gauss-Newton). The best of all rounds. Without pieces the recordings as they are.
     fn bent(
         &self,
         pieces: usize,

@@ -15,8 +15,8 @@ use crate::series::lost::fill;
 /// that the others do not have, and it hides a lag.
 const SHORT_BLOCKS: usize = 24;
 
-/// One of these lags, in sampling steps, has to reduce the error on what is fitted by this share, or
-/// none is looked for.
+/// One of these lags, in sampling steps, has to reduce the error on what is fitted by this share,
+/// or none is looked for.
 const HINTS: [f64; 3] = [1.0, LONG, 32.0];
 const HINT: f64 = 0.05;
 

@@ -47,8 +47,8 @@ const CLEAR: f64 = 4.0;
 /// From a damping of `1/√2` on there is no resonance. A lag says the same then.
 const RESONANT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// A ring of more damping hardly rings: it is a lag of second order, which smooths whatever the model
-/// does wrong. It has to take this share of the error, as a long lag has.
+/// A ring of more damping hardly rings: it is a lag of second order, which smooths whatever the
+/// model does wrong. It has to take this share of the error, as a long lag has.
 const DULL: f64 = 0.25;
 const DULL_WORTH: f64 = 0.5;
 

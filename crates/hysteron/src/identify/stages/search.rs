@@ -1,5 +1,5 @@
-//! Searches constants of creep and lag: those with the least error on what is fitted, and their error
-//! on blocks of time that are left out.
+//! Searches constants of creep and lag: those with the least error on what is fitted, and their
+//! error on blocks of time that are left out.
 
 use super::undone::{After, before, forward, no_time};
 use crate::error::{Error, Result};
@@ -18,8 +18,8 @@ use crate::series::{fair_range, fair_range_of_all, range};
 const BLOCKS: usize = 6;
 
 /// Creep and lag have to reduce the error on blocks left out by this share. Blocks of one recording
-/// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out lost
-/// 13 % on a recording at another frequency.
+/// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out
+/// lost 13 % on a recording at another frequency.
 pub(super) const WORTH: f64 = 0.1;
 
 /// So much of the whole error has to go, whatever the noise is.
@@ -37,8 +37,8 @@ const SLOWEST: f64 = 1.0 / 30.0;
 /// Time constants that are tried for a single term.
 const SINGLE: usize = 5;
 
-/// Levels on which the constants are found, if their number is left to the data, and the smoothness:
-/// a coarse or smooth plane takes its own width for a lag.
+/// Levels on which the constants are found, if their number is left to the data, and the
+/// smoothness: a coarse or smooth plane takes its own width for a lag.
 const FINE: usize = 40;
 const SLIGHT: Smooth = Smooth {
     along: 1e-9,
@@ -48,7 +48,8 @@ const SLIGHT: Smooth = Smooth {
 /// Rounds in which coefficients and time constants are refined, each with a smaller step.
 const REFINED: i32 = 4;
 
-/// Smoothness of the weights in the search, so that operators that a block left out do not run away.
+/// Smoothness of the weights in the search, so that operators that a block left out do not run
+/// away.
 const SMOOTH: Smooth = Smooth {
     along: 0.0,
     across: 1e-6,
@@ -173,8 +174,8 @@ impl<'a> Search<'a> {
     }
 
     /// For each number of terms of creep the best constants, with no lag and with one if it is left
-    /// to the data. A few numbers cannot follow noise, so they are those with the least error on what
-    /// is fitted; whether they are taken is another question.
+    /// to the data. A few numbers cannot follow noise, so they are those with the least error on
+    /// what is fitted; whether they are taken is another question.
     pub(super) fn candidates(
         &self,
         counts: &[usize],
@@ -288,8 +289,9 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Terms with time constants spread evenly over the logarithm, from a thirtieth ([`SLOWEST`]) to a
-    /// third of the longest recording. Faster ones would not be creep, but stand for other dynamics.
+    /// Terms with time constants spread evenly over the logarithm, from a thirtieth ([`SLOWEST`])
+    /// to a third of the longest recording. Faster ones would not be creep, but stand for other
+    /// dynamics.
     fn terms(&self, count: usize, coefficient: f64) -> Vec<CreepTerm> {
         let (from, to) = ((SLOWEST * self.longest).ln(), (self.longest / 3.0).ln());
         let tau = |k: usize| (from + (to - from) * (k as f64 + 0.5) / count as f64).exp();
