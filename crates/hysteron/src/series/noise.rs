@@ -51,6 +51,11 @@ pub fn noise(values: &[f64]) -> f64 {
     smallest.unwrap_or(0.0)
 }
 
+/// How many deviations the furthest of so many readings with Gaussian noise is away, about.
+pub(crate) fn furthest(samples: usize) -> f64 {
+    (2.0 * (samples.max(1) as f64).ln()).sqrt()
+}
+
 /// The differences of an order, one after the other.
 fn differences(values: &[f64], order: usize) -> impl Iterator<Item = f64> {
     // Those of each lower order, at the value before.

@@ -6,7 +6,7 @@
 //! 1968). A spike must also be beyond the samples on both sides of it, which a step or a turning
 //! point of the signal is not.
 
-use crate::series::noise::{SIGMA_PER_MEDIAN, noise};
+use crate::series::noise::{SIGMA_PER_MEDIAN, furthest, noise};
 use crate::series::range;
 
 /// Number of neighbours on either side. Eight in all are enough to outvote three wrong samples in a
@@ -23,8 +23,7 @@ const LINE: f64 = 1.1;
 /// The deviations from which on one of so many samples is a spike. The furthest of `n` readings
 /// with Gaussian noise is about `√(2 ln n)` deviations away, and is none.
 pub(crate) fn usual_deviations(samples: usize) -> f64 {
-    let furthest = (2.0 * (samples.max(1) as f64).ln()).sqrt();
-    DEVIATIONS.max(LINE * furthest)
+    DEVIATIONS.max(LINE * furthest(samples))
 }
 
 /// A spike below this share of the range is not removed. It is less than half the distance between
@@ -79,7 +78,10 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<(usize, 
         let begin = first.min(windows.saturating_sub(LANES));
         let window = |lane: usize| &values[begin + lane..begin + lane + 2 * REACH + 1];
         let lanes = first - begin..LANES.min(windows - begin);
-        if lanes.clone().all(|lane| furthest(window(lane)) <= least) {
+        if lanes
+            .clone()
+            .all(|lane| furthest_from_line(window(lane)) <= least)
+        {
             continue;
         }
         let (residuals, spreads) = against_neighbours(|lane| window(lane.min(lanes.end - 1)));
@@ -134,7 +136,7 @@ const PAIRS: usize = OTHERS * (OTHERS - 1) / 2;
 
 /// The largest distance that [`against_neighbours`] can find. The slope of the line is at most that
 /// of the steepest step, so no point of the line is further off.
-fn furthest(window: &[f64]) -> f64 {
+fn furthest_from_line(window: &[f64]) -> f64 {
     let middle = window[REACH];
     let away = |most: f64, x: &f64| most.max((x - middle).abs());
     let away = window.iter().fold(0.0, away);
