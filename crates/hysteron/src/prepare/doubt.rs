@@ -4,8 +4,8 @@
 //! units, or with their columns exchanged, are told by what they do to a model of the others.
 
 use super::disagree::disagreement;
-use super::mended::without_wrong;
 use super::options::Step;
+use super::single::without_wrong;
 use crate::error::{Error, Result};
 use crate::recording::{Recording, Rows, turned_in_gaps};
 use crate::remedy::{Remedy, Setting};

@@ -1,21 +1,9 @@
 //! What the preparation would change if it were asked for: only that is advice.
 
-use super::judge::Judge;
-use super::options::{PrepareOptions, Step};
-use super::single;
+use super::options::PrepareOptions;
+use super::single::without_wrong;
 use crate::progress::Progress;
 use crate::recording::Recording;
-
-/// The recording without the wrong readings that it would replace.
-pub(super) fn without_wrong(recording: &Recording) -> Recording {
-    let options = PrepareOptions {
-        spikes: Step::Auto,
-        ..PrepareOptions::all(Step::Off)
-    };
-    let mut mended = recording.clone();
-    single::repair(&mut mended, &options, &mut Judge::new(recording));
-    mended
-}
 
 /// The samples whose input it would replace, and those whose output, ascending.
 pub(crate) fn replaced(recording: &Recording) -> [Vec<usize>; 2] {

@@ -46,6 +46,17 @@ pub(super) fn repair(
     })
 }
 
+/// The recording without the wrong readings that the preparation would replace if asked to.
+pub(super) fn without_wrong(recording: &Recording) -> Recording {
+    let options = PrepareOptions {
+        spikes: Step::Auto,
+        ..PrepareOptions::all(Step::Off)
+    };
+    let mut mended = recording.clone();
+    repair(&mut mended, &options, &mut Judge::new(recording));
+    mended
+}
+
 /// Replaces what was lost of one series. What is left to the data is taken with bursts and held
 /// readings, or with spikes alone, or not at all. What is lost with bursts may be `known`.
 fn remove(
