@@ -1,13 +1,14 @@
 //! The errors of this crate, with a stable code for each kind.
 
 use crate::remedy::Remedy;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// The position of a row in a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
     /// The row begins on this line of a text file, counted from 1.
     Line(u64),

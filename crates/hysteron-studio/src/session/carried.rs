@@ -42,7 +42,7 @@ struct CarriedRecording {
     /// Names and units of input, output and load.
     quantities: [(String, Option<String>); 3],
     simulated: bool,
-    source: Option<(std::path::PathBuf, String)>,
+    source: Option<Source>,
     undone: Option<UndoneLag>,
 }
 
@@ -133,7 +133,6 @@ impl Finished {
 impl CarriedRecording {
     fn new(recording: &Recording) -> Self {
         let quantity = |of: &Quantity| (of.name.clone(), of.unit.clone());
-        let source = recording.source.as_ref();
         Self {
             time: recording.time.as_deref().map(text),
             input: text(&recording.input),
@@ -145,7 +144,7 @@ impl CarriedRecording {
                 quantity(&recording.load_quantity),
             ],
             simulated: recording.origin == Origin::Simulated,
-            source: source.map(|source| (source.path.clone(), source.sha256.clone())),
+            source: recording.source.clone(),
             undone: recording.undone,
         }
     }
@@ -162,7 +161,7 @@ impl CarriedRecording {
                 true => Origin::Simulated,
                 false => Origin::Measured,
             },
-            source: self.source.map(|(path, sha256)| Source::new(path, sha256)),
+            source: self.source,
             undone: self.undone,
             input: numbers(&self.input)?,
             output: numbers(&self.output)?,

@@ -127,7 +127,7 @@ pub enum Origin {
 }
 
 /// The file that a recording was read from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// Its path, as given by the caller.
     pub path: PathBuf,

@@ -1,9 +1,14 @@
 //! The positions of rows in their file. Nearly all rows follow one another, so runs are kept.
 
 use crate::error::Place;
+use serde::{Deserialize, Serialize};
 
 /// The positions of rows, in the order of the rows.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(
+    try_from = "(Vec<(usize, Place)>, usize)",
+    into = "(Vec<(usize, Place)>, usize)"
+)]
 pub(crate) struct Positions {
     /// The number of the first row of each run, and its position.
     runs: Vec<(usize, Place)>,
@@ -90,17 +95,37 @@ impl FromIterator<Place> for Positions {
     }
 }
 
+impl From<Positions> for (Vec<(usize, Place)>, usize) {
+    fn from(positions: Positions) -> Self {
+        (positions.runs, positions.len)
+    }
+}
+
+impl TryFrom<(Vec<(usize, Place)>, usize)> for Positions {
+    type Error = &'static str;
+
+    fn try_from((runs, len): (Vec<(usize, Place)>, usize)) -> Result<Self, Self::Error> {
+        let mut firsts = runs.iter().map(|run| run.0);
+        let ascend = firsts.clone().chain([len]).is_sorted_by(|a, b| a < b);
+        match ascend && firsts.next() == (len > 0).then_some(0) {
+            true => Ok(Self { runs, len }),
+            false => Err("runs of rows that do not follow one another"),
+        }
+    }
+}
+
 /// The position of a row in a run that begins before it.
 fn place_in((first, place): (usize, Place), row: usize) -> Place {
     let after = (row - first) as u64;
     match place {
-        Place::Line(line) => Place::Line(line + after),
-        Place::Row(number) => Place::Row(number + after),
+        Place::Line(line) => Place::Line(line.saturating_add(after)),
+        Place::Row(number) => Place::Row(number.saturating_add(after)),
     }
 }
 
 #[cfg(test)]
 #[cfg(feature = "data")]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use rand_chacha::ChaCha8Rng;
@@ -114,6 +139,23 @@ mod tests {
         }
         assert!(positions.iter().eq((4..9).map(Place::Row)));
         assert_eq!(positions.runs.len(), 1);
+    }
+
+    /// Whatever is read, the position of each row can be told.
+    #[test]
+    fn runs_that_do_not_follow_one_another_are_refused() {
+        let mut random = ChaCha8Rng::seed_from_u64(12);
+        let mut read = 0;
+        for _ in 0..5000 {
+            let mut number = || random.next_u32() as usize % 4;
+            let runs = (0..number()).map(|_| (number(), Place::Line(u64::MAX - 1)));
+            let runs: Vec<(usize, Place)> = runs.collect();
+            if let Ok(positions) = Positions::try_from((runs, number())) {
+                assert_eq!(positions.iter().count(), positions.len());
+                read += 1;
+            }
+        }
+        assert!(read > 500, "{read}");
     }
 
     #[test]
@@ -135,6 +177,8 @@ mod tests {
             let mut kept: Positions = places.iter().copied().collect();
             assert_eq!(kept.len(), places.len());
             assert!(kept.iter().eq(places.iter().copied()), "{places:?}");
+            let text = serde_json::to_string(&kept).unwrap();
+            assert_eq!(serde_json::from_str::<Positions>(&text).unwrap(), kept);
             let left = random.next_u32() as usize % 60;
             kept.truncate(left);
             assert!(

@@ -78,10 +78,10 @@ fn is_beyond((low, high): (f64, f64), inner: (f64, f64), times: f64) -> bool {
 
 /// The values with lines in place of the few that stand out from their neighbours.
 fn without_single(values: Vec<f64>) -> Vec<f64> {
-    let (low, high) = range(&values);
     let most = MOST * values.len() as f64;
     let (mut rest, mut replaced) = (values.clone(), 0);
     for _ in 0..ROUNDS {
+        let (low, high) = range(&rest);
         let (far, without) = isolated(rest, DEVIATIONS, SMALLEST * (high - low));
         replaced += far.len();
         if replaced as f64 > most {
