@@ -97,7 +97,7 @@ pub(crate) fn advice(
     let mut advice = hysteron::advice(model, recordings)?;
     if args.prepare {
         // What the preparation left, it has judged.
-        advice.retain(|one| !one.is_cured_by_preparation());
+        advice.retain(|one| !one.is_judged_by_preparation());
     }
     Ok(advice)
 }

@@ -113,11 +113,19 @@ impl fmt::Display for Advice {
                  {model:.2} %: the data do not determine the model, or it cannot follow them"
             ),
             Self::FalseReversals {
-                all, real, noise, ..
+                all,
+                real,
+                noise,
+                removed,
             } => write!(
                 f,
                 "the input reverses {all} times, but only {real} times by more than its noise of \
-                 {noise:.3}: the others bend the model"
+                 {noise:.3}{}",
+                if *removed {
+                    ": the others bend the model"
+                } else {
+                    ""
+                }
             ),
             Self::Spikes {
                 series,
@@ -165,10 +173,19 @@ impl fmt::Display for Advice {
 }
 
 impl Advice {
-    /// Whether it warns of readings that [`crate::prepare`] judges, and mends where that helps.
+    /// Whether it warns of readings that [`crate::prepare`] judges, and replaces where that helps.
+    #[must_use]
+    pub fn is_judged_by_preparation(&self) -> bool {
+        matches!(self, Self::Spikes { .. } | Self::FalseReversals { .. })
+    }
+
+    /// Whether [`crate::prepare`] would replace such readings.
     #[must_use]
     pub fn is_cured_by_preparation(&self) -> bool {
-        matches!(self, Self::Spikes { .. } | Self::FalseReversals { .. })
+        matches!(
+            self,
+            Self::Spikes { replaced: 1.., .. } | Self::FalseReversals { removed: true, .. }
+        )
     }
 
     /// What may help.
@@ -194,8 +211,8 @@ impl Advice {
                 Remedy::new("use {}, which removes them", [Setting::on("prepare")])
             }
             Self::FalseReversals { .. } => Remedy::new(
-                "record with less noise, or average the readings: preparation leaves these \
-                 reversals, as a model without them predicts no better",
+                "record with less noise, or average the readings: preparation does not remove these \
+                 reversals",
                 [],
             ),
             Self::Spikes {

@@ -99,7 +99,8 @@ fn outliers_line(fit: &FitSummary, model: &Model, recordings: &[Recording]) -> O
         };
         let by = model.output.text(outlier.by);
         let own = recordings.get(outlier.recording);
-        let named = own.map_or_else(String::new, |own| own.named(outlier.sample));
+        let number = || format!("sample {}", outlier.sample + 1);
+        let named = own.map_or_else(number, |own| own.named(outlier.sample));
         format!("{recording}{named} by {by}")
     });
     let named = named.collect::<Vec<_>>().join("; ");

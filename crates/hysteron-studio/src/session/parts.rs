@@ -33,9 +33,8 @@ impl Stands {
         let is_run = last.checked_sub(first) == Some((self.samples as u64).saturating_sub(1));
         match (recording.len() == self.samples, is_run, self.first) {
             (false, ..) => None,
-            (true, true, Place::Line(first)) => Some(Place::Line(first + sample as u64)),
             (true, true, Place::Row(first)) => Some(Place::Row(first + sample as u64)),
-            (true, false, _) => recording.place(sample),
+            (true, ..) => recording.place(sample),
         }
     }
 }

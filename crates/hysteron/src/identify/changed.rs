@@ -54,8 +54,9 @@ pub(super) fn at(recording: &Recording, kept: &[usize]) -> Recording {
     recording.picked(|series| kept.iter().map(|n| series[*n]).collect())
 }
 
-/// Choices see about so many samples of all recordings, or twice as many: the extremes. More of
-/// them tell candidates apart no better than their noise, and a pass over them takes longer.
+/// Choices see about so many samples of all recordings, up to three times as many: the extremes.
+/// More of them tell candidates apart no better than their noise, and a pass over them takes
+/// longer.
 const ENOUGH: usize = 50_000;
 
 /// The samples of a recording that choices need, where it has more. The least and the largest load

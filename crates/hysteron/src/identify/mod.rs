@@ -1,10 +1,10 @@
 //! Identification: finds the weights of a model from recordings.
 //!
 //! `fit` is the entry point; `options` are its settings, `words` the same as texts. `weights`
-//! solves the least-squares problem. `delay` finds the dead time and `outliers` are found, both
-//! first. `choose` selects levels and smoothness. `doubt` estimates how well the data determine the
-//! weights. `stages` identifies the thermal body in front of the operators. `chosen` hands choices
-//! on to other fits. `monotone` tells data that the model cannot follow.
+//! solves the least-squares problem. First `delay` finds the dead time and `outliers` wrong
+//! readings. `choose` selects levels and smoothness. `doubt` estimates how well the data determine
+//! the weights. `stages` identifies the thermal body in front of the operators. `chosen` hands
+//! choices on to other fits. `monotone` tells data that the model cannot follow.
 
 mod changed;
 mod choose;

@@ -7,7 +7,7 @@
 //! still to come (on a rising branch).
 
 use crate::series::Turning;
-use crate::series::noise::resolution;
+use crate::series::noise::{furthest, resolution};
 use hysteron_core::Direction;
 
 /// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by
@@ -48,7 +48,7 @@ fn monotone(branch: &mut [f64], ahead: fn(f64, f64) -> f64, behind: fn(f64, f64)
 /// The largest reversal that white noise of deviation `sigma` causes in `len` samples: the largest
 /// of so many Gaussian values (Donoho & Johnstone 1994), on both sides.
 pub(super) fn reach(len: usize, sigma: f64) -> f64 {
-    2.0 * (2.0 * (len as f64).ln()).sqrt() * sigma
+    2.0 * furthest(len) * sigma
 }
 
 /// The smallest step of a reading, plus a margin for the rounding of the difference of two

@@ -2,9 +2,9 @@
 //! sensor. A model that has not seen them errs much less on the rest.
 //!
 //! `suspects` tells which rows these may be. A model that cannot follow the material also errs in
-//! some rows more than in others. So those that a model alone tells disagree only if it is known why
-//! (`explained`): a change of their unit, or an exchange of their columns, makes them agree, or a
-//! channel stands still.
+//! some rows more than in others. So those that a model alone tells disagree only if it is known
+//! why (`explained`): a change of their unit, or an exchange of their columns, makes them agree, or
+//! a channel stands still.
 
 use super::explained::{explained, stands_still};
 use super::judge::{apart, from_kept, mean, unseen};
@@ -28,8 +28,8 @@ const HALF: f64 = 0.5;
 /// Sets of rows without which the others are followed nearly as well, up to this factor, are told
 /// from each other by their size: the smallest is named.
 const NEARLY: f64 = 1.5;
-/// Where nothing but a model tells which rows these are, the others err at most by this share of the
-/// range: otherwise the model cannot follow the material.
+/// Where nothing but a model tells which rows these are, the others err at most by this share of
+/// the range: otherwise the model cannot follow the material.
 const FOLLOWED: f64 = 0.02;
 /// Rows in the middle that raise the error on the others by this factor need no explanation: no
 /// material does that.
@@ -58,8 +58,8 @@ pub(super) fn disagreement(recording: &Recording) -> Option<Disagreement> {
     Some(found)
 }
 
-/// All rows of a short recording; of a long one, those with the smallest and the largest input of
-/// each of many pieces, so that turning points stay.
+/// All rows of a short recording; of a long one, its ends and those with the smallest and the
+/// largest input of each of many pieces, so that turning points stay.
 fn fewer(recording: &Recording) -> Vec<usize> {
     let len = recording.len();
     if len <= ROWS {
@@ -74,6 +74,7 @@ fn fewer(recording: &Recording) -> Vec<usize> {
         [least, most].into_iter().flatten()
     };
     let mut rows: Vec<usize> = (0..pieces).flat_map(ends).collect();
+    rows.extend([0, len - 1]);
     rows.sort_unstable();
     rows.dedup();
     rows
@@ -126,8 +127,8 @@ fn found(recording: &Recording) -> Option<Disagreement> {
 /// What models of the samples that are kept predict.
 type Predicted = fn(&Recording, &dyn Fn(usize) -> bool) -> Option<Vec<f64>>;
 
-/// The errors with and without suspect rows, if these raise that on the others by this `factor`. `all`
-/// is what models of all rows predict, and `predicted` makes such models.
+/// The errors with and without suspect rows, if these raise that on the others by this `factor`.
+/// `all` is what models of all rows predict, and `predicted` makes such models.
 fn compared(
     recording: &Recording,
     suspect: Suspect,

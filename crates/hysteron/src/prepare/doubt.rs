@@ -107,12 +107,17 @@ impl fmt::Display for Doubt {
                 };
                 write!(
                     f,
-                    "rows {} disagree with {}: a model that sees them errs {with:.2} % of the range \
-                     on the others, {how} {without:.2} %{causes}",
+                    "rows {} disagree with {}, {how} {without:.2} %{causes}",
                     rows.collect::<Vec<_>>().join(" and "),
                     match others {
-                        Some(others) => format!("rows {others}, and either may be wrong"),
-                        None => "the others".to_owned(),
+                        Some(others) => format!(
+                            "rows {others}, and either may be wrong: a model of both errs \
+                             {with:.2} % of the range on the latter"
+                        ),
+                        None => format!(
+                            "the others: a model that sees them errs {with:.2} % of the range on \
+                             the others"
+                        ),
                     }
                 )
             }
@@ -173,6 +178,16 @@ impl Doubt {
             return Remedy::new(
                 "cut the file there, since several files make one experiment; with {} it is \
                  believed",
+                [Setting::on("believe")],
+            );
+        }
+        if let Self::Disagree {
+            others: Some(_), ..
+        } = self
+        {
+            return Remedy::new(
+                "find out which of the two is right, and fit that one alone, or bring both to one \
+                 unit; with {} they are believed",
                 [Setting::on("believe")],
             );
         }

@@ -31,12 +31,12 @@ pub enum Step {
 /// | `believe` | off | on, off | |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrepareOptions {
-    /// Restoration of lost signs: some meters show only the magnitude just below zero. It turns good
-    /// readings over where no sign was lost, so it is done only where it is asked for.
+    /// Restoration of lost signs: some meters show only the magnitude just below zero. It turns
+    /// good readings over where no sign was lost, so it is done only where it is asked for.
     pub signs: bool,
     /// Removal of spikes. The value is the number of deviations from which on a sample is a spike.
-    /// Auto: 4, and also bursts of wrong readings, and readings that were held while the series
-    /// moved on.
+    /// Auto: 4, or more in a long recording, so that noise is no spike; and also bursts of wrong
+    /// readings, and readings that were held while the series moved on.
     pub spikes: Step,
     /// Resampling to equal time steps of this length. Auto: the median step, and only if the time
     /// is irregular and a filter needs equal steps.

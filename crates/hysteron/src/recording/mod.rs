@@ -133,7 +133,8 @@ pub struct Source {
     pub path: PathBuf,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
-    /// Where its samples stand in it, unless they count as its rows do.
+    /// Where its samples stand in it, unless they count as its rows do, or are none of them any
+    /// more.
     pub(crate) places: Option<Positions>,
 }
 
@@ -231,7 +232,7 @@ impl Recording {
 
     /// Where in its file a sample stands, counted from 0: a line of text counts from the first line
     /// of the file, so with its header. `None` where samples count as the rows of a binary file do:
-    /// no row was left out, and the file is one recording.
+    /// no row was left out, and the file is one recording; and where samples are no rows any more.
     #[must_use]
     pub fn place(&self, sample: usize) -> Option<Place> {
         let places = self.source.as_ref()?.places.as_ref()?;

@@ -252,6 +252,20 @@ mod tests {
         );
     }
 
+    /// Wherever a spike is, and however many windows are left for the last look.
+    #[test]
+    fn a_spike_is_found_in_a_series_of_any_length() {
+        for len in 2 * REACH + 1..5 * LANES {
+            let noise = gaussian(len as u64, len).into_iter().enumerate();
+            let ramp: Vec<f64> = noise.map(|(n, e)| n as f64 + 0.1 * e).collect();
+            for at in REACH..len - REACH {
+                let mut read = ramp.clone();
+                read[at] += 30.0;
+                assert_eq!(remove(&mut read, DEVIATIONS), [at], "of {len}");
+            }
+        }
+    }
+
     #[test]
     fn the_furthest_of_many_readings_is_no_spike() {
         for (seed, samples) in [(1, 1000), (2, 10_000), (3, 100_000), (4, 300_000)] {

@@ -27,7 +27,7 @@ pub enum Cause {
         share: f64,
         /// Their number.
         samples: usize,
-        /// Number of these samples that [`crate::prepare`] would mend.
+        /// Number of these samples that [`crate::prepare`] would replace.
         replaced: usize,
     },
     /// The model's band, which should hold 95 % of the samples, holds much less of them.

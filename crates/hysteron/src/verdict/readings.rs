@@ -11,21 +11,23 @@ pub(super) fn cause(recordings: &[Recording], modelled: &[f64]) -> Option<Cause>
         return None;
     }
     let (mut total, mut first) = (0.0, 0);
-    let (mut within, mut count) = (0.0, 0);
+    let (mut within, mut all) = (0.0, Vec::new());
     for recording in recordings {
         let modelled = &modelled[first..first + recording.len()];
         let squared = |n: usize| (recording.output[n] - modelled[n]).powi(2);
         total += (0..recording.len()).map(squared).sum::<f64>();
         let wrong = at_once(recording.wrong_readings());
         within += wrong.iter().map(|n| squared(*n)).sum::<f64>();
-        count += wrong.len();
+        all.push(wrong);
         first += recording.len();
     }
     let share = within / total;
     (share >= WORTH).then(|| Cause::Readings {
         share,
-        samples: count,
-        replaced: recordings.iter().map(count_replaced).sum(),
+        samples: all.iter().map(Vec::len).sum(),
+        replaced: std::iter::zip(recordings, &all)
+            .map(|(recording, wrong)| count_replaced(recording, wrong))
+            .sum(),
     })
 }
 
@@ -37,9 +39,8 @@ fn at_once(lists: [Vec<usize>; 2]) -> Vec<usize> {
     samples
 }
 
-/// How many wrong samples of a recording the preparation would mend.
-fn count_replaced(recording: &Recording) -> usize {
-    let wrong = at_once(recording.wrong_readings());
+/// How many of the wrong samples of a recording the preparation would replace.
+fn count_replaced(recording: &Recording, wrong: &[usize]) -> usize {
     let replaced = at_once(replaced(recording));
     let is_wrong = |sample: &&usize| wrong.binary_search(sample).is_ok();
     replaced.iter().filter(is_wrong).count()

@@ -13,9 +13,9 @@ pub(super) struct Tried {
 
 impl Tried {
     pub(super) fn by(model: &Model, recordings: &[Recording]) -> Self {
-        // A lag alone may have been looked for.
+        // A lag alone may have been looked for. Older records do not tell.
         let looked_for =
-            |fit: &FitSummary| fit.other.get(AFTER).is_some_and(|it| it["creep"] == true);
+            |fit: &FitSummary| fit.other.get(AFTER).is_some_and(|it| it["creep"] != false);
         Self {
             creep: !model.creep().is_empty() || model.fit.as_ref().is_some_and(looked_for),
             thermal: model.thermal.is_some(),
