@@ -211,8 +211,8 @@ impl Advice {
                 Remedy::new("use {}, which removes them", [Setting::on("prepare")])
             }
             Self::FalseReversals { .. } => Remedy::new(
-                "record with less noise, or average the readings: preparation does not remove these \
-                 reversals",
+                "record with less noise, or average the readings: preparation does not remove \
+                 these reversals",
                 [],
             ),
             Self::Spikes {
@@ -366,23 +366,23 @@ fn spikes(
             outliers.any(|outlier| (outlier.recording, outlier.sample) == (number, sample))
         };
         output.retain(|sample| !is_outlier(*sample));
-        let mended = match input.is_empty() && output.is_empty() {
+        let replaced = match input.is_empty() && output.is_empty() {
             true => Default::default(),
             false => replaced(recording),
         };
-        let of = |found: Vec<usize>, mended: &[usize], quantity: &Quantity| {
-            let is_mended = |sample: &&usize| mended.binary_search(sample).is_ok();
+        let of = |found: Vec<usize>, replaced: &[usize], quantity: &Quantity| {
+            let is_replaced = |sample: &&usize| replaced.binary_search(sample).is_ok();
             found.first().map(|first| Advice::Spikes {
                 series: quantity.name.clone(),
                 samples: found.len(),
                 first: first + 1,
                 place: recording.place(*first),
-                replaced: found.iter().filter(is_mended).count(),
+                replaced: found.iter().filter(is_replaced).count(),
             })
         };
         let both = [
-            of(input, &mended[0], &recording.input_quantity),
-            of(output, &mended[1], &recording.output_quantity),
+            of(input, &replaced[0], &recording.input_quantity),
+            of(output, &replaced[1], &recording.output_quantity),
         ];
         both.into_iter().flatten()
     })

@@ -59,13 +59,15 @@ pub(super) fn at(recording: &Recording, kept: &[usize]) -> Recording {
 /// longer.
 const ENOUGH: usize = 50_000;
 
-/// The samples of a recording that choices need, where it has more. The least and the largest load
-/// are among them, because weights are functions of the load between these.
+/// The samples of a recording that choices need, where it has more.
 pub(super) fn enough(recording: &Recording) -> Option<Vec<usize>> {
     let stride = recording.len().div_ceil(ENOUGH);
-    if stride <= 1 {
-        return None;
-    }
+    (stride > 1).then(|| chosen(recording, stride))
+}
+
+/// The samples that [`thin`] keeps, and those with the least and the largest load: weights are
+/// functions of the load between these, and a fit to some samples may predict all.
+fn chosen(recording: &Recording, stride: usize) -> Vec<usize> {
     let mut samples = kept(&recording.input, stride);
     if let Some(load) = &recording.load {
         let by = |a: &usize, b: &usize| load[*a].total_cmp(&load[*b]);
@@ -74,11 +76,11 @@ pub(super) fn enough(recording: &Recording) -> Option<Vec<usize>> {
         samples.sort_unstable();
         samples.dedup();
     }
-    Some(samples)
+    samples
 }
 
-/// The recordings with as many samples as choices need: the same of each as [`thin`] keeps of the
-/// recording in its place in `like`.
+/// The recordings with as many samples as choices need: the same of each as are chosen of
+/// the recording in its place in `like`.
 pub(super) fn few<'a>(recordings: &'a [Recording], like: &[Recording]) -> Cow<'a, [Recording]> {
     let samples: usize = like.iter().map(Recording::len).sum();
     let stride = samples.div_ceil(ENOUGH);
@@ -86,7 +88,7 @@ pub(super) fn few<'a>(recordings: &'a [Recording], like: &[Recording]) -> Cow<'a
         return Cow::Borrowed(recordings);
     }
     let own = recordings.iter().zip(like);
-    own.map(|(own, like)| at(own, &kept(&like.input, stride)))
+    own.map(|(own, like)| at(own, &chosen(like, stride)))
         .collect()
 }
 

@@ -25,8 +25,8 @@ impl LoadDependence {
             recording.len(),
             recording.named(first)
         );
-        let words = "leave these rows out, or fit a model to a recording that has such loads too; if \
-             nearly all are outside, look at the unit of the load and at its column";
+        let words = "leave these rows out, or fit a model to a recording that has such loads too; \
+             if nearly all are outside, look at the unit of the load and at its column";
         let error = Error::Recording {
             path: recording.source.as_ref().map(|source| source.path.clone()),
             row: None,

@@ -22,27 +22,37 @@ pub(super) fn repair(
     if options.signs {
         signs = [&mut work.input, &mut work.output].map(|values| sign::restore(values));
     }
-    let usual = usual_deviations(work.len());
     let deviations = match options.spikes {
         Step::Off => None,
-        Step::Auto => Some(usual),
+        Step::Auto => Some(usual_deviations(work.len())),
         Step::Value(deviations) => Some(deviations),
     };
-    let mut outputs = None;
-    if options.spikes == Step::Auto {
-        let suspect = wrong(&work.output, None, usual, true);
-        judge.ignore(suspect.clone());
-        outputs = Some(suspect);
-    }
-    let mut of = |input: bool, known: Option<Vec<usize>>| {
+    let mut removed = [Vec::new(), Vec::new()];
+    if let Some(deviations) = deviations {
         let how = options.spikes;
-        let removed = deviations.map(|above| remove(work, input, (how, above), known, judge));
-        Repairs::new(&signs[usize::from(!input)], &removed.unwrap_or_default())
-    };
+        let runs = how == Step::Auto;
+        let [input, output] = [true, false].map(|input| lost(work, input, deviations, runs));
+        if runs {
+            judge.ignore(output.clone());
+        }
+        removed = [(true, input), (false, output)].map(|(input, found)| {
+            if found.is_empty() || replace(work, input, &found, how, judge) {
+                return found;
+            }
+            // Spikes alone, without bursts and held readings.
+            let spikes = lost(work, input, deviations, false);
+            let other = !spikes.is_empty() && spikes != found;
+            match other && replace(work, input, &spikes, how, judge) {
+                true => spikes,
+                false => Vec::new(),
+            }
+        });
+    }
+    let [input, output] = [0, 1].map(|n| Repairs::new(&signs[n], &removed[n]));
     Some(Spikes {
         deviations,
-        input: of(true, None),
-        output: of(false, outputs),
+        input,
+        output,
     })
 }
 
@@ -57,42 +67,31 @@ pub(super) fn without_wrong(recording: &Recording) -> Recording {
     mended
 }
 
-/// Replaces what was lost of one series. What is left to the data is taken with bursts and held
-/// readings, or with spikes alone, or not at all. What is lost with bursts may be `known`.
-fn remove(
+/// The readings of the input or of the output that were lost, with `runs` in bursts and held too.
+fn lost(work: &Recording, input: bool, deviations: f64, runs: bool) -> Vec<usize> {
+    match input {
+        true => wrong(&work.input, Some(&work.output), deviations, runs),
+        false => wrong(&work.output, None, deviations, runs),
+    }
+}
+
+/// Replaces what was lost of one series; what is left to the data, only if it helps. Whether it did.
+fn replace(
     work: &mut Recording,
     input: bool,
-    (how, deviations): (Step, f64),
-    mut known: Option<Vec<usize>>,
+    lost: &[usize],
+    how: Step,
     judge: &mut Judge<'_>,
-) -> Vec<usize> {
-    let kinds: &[bool] = match how {
-        Step::Auto => &[true, false],
-        _ => &[false],
+) -> bool {
+    let (name, change) = match input {
+        true => (
+            "spikes of the input",
+            Change::Input(fill::input(work, lost)),
+        ),
+        false => (
+            "spikes of the output",
+            Change::Output(fill::output(work, lost)),
+        ),
     };
-    let mut tried = Vec::new();
-    for runs in kinds {
-        let found = known.take().unwrap_or_else(|| match input {
-            true => wrong(&work.input, Some(&work.output), deviations, *runs),
-            false => wrong(&work.output, None, deviations, *runs),
-        });
-        if found.is_empty() || found == tried {
-            break;
-        }
-        let (name, change) = match input {
-            true => (
-                "spikes of the input",
-                Change::Input(fill::input(work, &found)),
-            ),
-            false => (
-                "spikes of the output",
-                Change::Output(fill::output(work, &found)),
-            ),
-        };
-        if judge.offer(name, how, work, change) {
-            return found;
-        }
-        tried = found;
-    }
-    Vec::new()
+    judge.offer(name, how, work, change)
 }

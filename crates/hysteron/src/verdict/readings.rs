@@ -16,7 +16,7 @@ pub(super) fn cause(recordings: &[Recording], modelled: &[f64]) -> Option<Cause>
         let modelled = &modelled[first..first + recording.len()];
         let squared = |n: usize| (recording.output[n] - modelled[n]).powi(2);
         total += (0..recording.len()).map(squared).sum::<f64>();
-        let wrong = at_once(recording.wrong_readings());
+        let wrong = in_either(recording.wrong_readings());
         within += wrong.iter().map(|n| squared(*n)).sum::<f64>();
         all.push(wrong);
         first += recording.len();
@@ -32,7 +32,7 @@ pub(super) fn cause(recordings: &[Recording], modelled: &[f64]) -> Option<Cause>
 }
 
 /// The samples that are in either list.
-fn at_once(lists: [Vec<usize>; 2]) -> Vec<usize> {
+fn in_either(lists: [Vec<usize>; 2]) -> Vec<usize> {
     let mut samples = lists.concat();
     samples.sort_unstable();
     samples.dedup();
@@ -41,7 +41,7 @@ fn at_once(lists: [Vec<usize>; 2]) -> Vec<usize> {
 
 /// How many of the wrong samples of a recording the preparation would replace.
 fn count_replaced(recording: &Recording, wrong: &[usize]) -> usize {
-    let replaced = at_once(replaced(recording));
+    let replaced = in_either(replaced(recording));
     let is_wrong = |sample: &&usize| wrong.binary_search(sample).is_ok();
     replaced.iter().filter(is_wrong).count()
 }
