@@ -1,6 +1,7 @@
 //! From the choices of single pilots to a few that serve all of them.
 
 use super::choice::{FleetKind, FleetShared};
+use super::share::HARM;
 use super::signs::{Signs, Usual, ratio};
 use crate::error::Result;
 use crate::identify::Chosen;
@@ -71,29 +72,33 @@ impl Palette {
     }
 
     /// The candidates that serve the pilots, each the one that helps most beside those before it
-    /// (the greedy way to k medians). The errors are in logarithms: what counts is a factor.
+    /// (the greedy way to k medians). The errors are in logarithms: what counts is a factor. Each
+    /// further one costs every actuator another fit, so it has to serve two more pilots, or one
+    /// that would come to harm.
     fn served(&self) -> Vec<usize> {
         let mut found = Vec::new();
         let mut errors = vec![CLIPPED.ln(); self.own.len()];
-        while errors.iter().any(|error| *error > SERVES.ln()) && found.len() < MOST {
+        while found.len() < MOST {
             let with = |candidate: usize| {
                 let pilots = errors.iter().enumerate();
                 pilots.map(move |(pilot, error)| error.min(self.ratio(candidate, pilot).ln()))
             };
-            let rated = (0..self.candidates.len()).map(|n| (n, with(n).sum::<f64>()));
-            let rated: Vec<(usize, f64)> = rated.collect();
+            let is_worth = |candidate: &usize| {
+                let served = errors.iter().zip(with(*candidate));
+                let served = served.filter(|(old, new)| **old > SERVES.ln() && *new <= SERVES.ln());
+                let served: Vec<f64> = served.map(|(old, _)| *old).collect();
+                served.len() > 1 || served.iter().any(|old| *old > HARM.ln())
+            };
+            let rated = (0..self.candidates.len()).filter(is_worth);
+            let rated: Vec<(usize, f64)> = rated.map(|n| (n, with(n).sum())).collect();
             let least = rated
                 .iter()
                 .fold(f64::INFINITY, |least, rated| least.min(rated.1));
             let as_well = least + AS_WELL.ln() * errors.len() as f64;
             let best = rated.iter().filter(|rated| rated.1 <= as_well);
-            let Some(&(best, sum)) = best.min_by_key(|rated| cost(&self.candidates[rated.0]))
-            else {
+            let Some(&(best, _)) = best.min_by_key(|rated| cost(&self.candidates[rated.0])) else {
                 break;
             };
-            if sum >= errors.iter().sum::<f64>() {
-                break;
-            }
             errors = with(best).collect();
             found.push(best);
         }

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 
 /// With a larger error on what is left out, in multiples of that of its own choice, an actuator has
 /// its own choice.
-const HARM: f64 = 1.3;
+pub(super) const HARM: f64 = 1.3;
 
 /// A model with the choice of a kind.
 struct Shared {

@@ -88,8 +88,8 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     // No part of the rows then errs by enough. The usual range of the others may be smaller; that
     // is so where the outputs of many rows are wrong, and then the series jump, or the errors are
     // large.
-    let error = mean(apart(&recording.output, &all));
-    if jumps.is_empty() && error <= 0.5 * HALF * LEAST * span {
+    let most = mean_of_the_largest(apart(&recording.output, &all), HALF);
+    if jumps.is_empty() && most <= 0.5 * LEAST * span {
         return None;
     }
     let compared_with = |suspect| compared(recording, suspect, FACTOR, &all, from_kept);
@@ -124,6 +124,15 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     )
 }
 
+/// The mean of this share of the values, the largest ones: no other part of the same size has a
+/// larger one.
+fn mean_of_the_largest(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_unstable_by(|a, b| b.total_cmp(a));
+    let count = (share * values.len() as f64).ceil().max(1.0);
+    mean(values.into_iter().take(count as usize))
+}
+
 /// What models of the samples that are kept predict.
 type Predicted = fn(&Recording, &dyn Fn(usize) -> bool) -> Option<Vec<f64>>;
 
@@ -151,6 +160,20 @@ fn compared(
     }
     let output = of_others(&recording.output);
     let off = |model: &[f64]| mean(apart(&output, model));
+    let with = off(&of_others(all));
+    // The usual range may be that of the wrong rows.
+    let span = usual_span(&output).min(usual_span(&recording.output));
+    let harms = with > least * span;
+    // Only a channel that stands still may do less harm. All others need no models then.
+    let may_stand = suspect.at_sight && rows.len() == 1 && suspect.way.is_none();
+    let model = may_stand.then(|| from_kept(recording, &kept)).flatten();
+    let stands = |without| {
+        let stands = |model: &Vec<f64>| stands_still(recording, &rows[0], model, without);
+        model.as_ref().is_some_and(stands)
+    };
+    if !harms && !stands(0.0) {
+        return None;
+    }
     let without = match suspect.way {
         Some(way) => off(&of_others(&predicted(&way.of(recording, rows), &|_| true)?)),
         // If their outputs alone are wrong, the inputs are still history.
@@ -163,15 +186,8 @@ fn compared(
                 .fold(f64::INFINITY, f64::min)
         }
     };
-    let with = mean(apart(&output, &of_others(all)));
-    // The usual range may be that of the wrong rows.
-    let span = usual_span(&output).min(usual_span(&recording.output));
-    let harm = with > least * span && with > factor * without;
-    let still = || match (&rows[..], suspect.way) {
-        ([rows], None) if suspect.at_sight => stands_still(recording, rows, without),
-        _ => false,
-    };
-    (harm || still()).then_some(Disagreement {
+    let harm = harms && with > factor * without;
+    (harm || stands(without)).then_some(Disagreement {
         suspect,
         with,
         without,

@@ -72,11 +72,15 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
     found.into_iter().flatten().any(|off| off <= enough)
 }
 
-/// Whether rows in which a channel stands still are far from what the others say, which a model
-/// follows with the error `without`.
-pub(super) fn stands_still(recording: &Recording, rows: &Range<usize>, without: f64) -> bool {
-    let kept = |n: usize| !rows.contains(&n);
-    let (Some(others), Some(model)) = (recording.only(kept), from_kept(recording, &kept)) else {
+/// Whether rows in which a channel stands still are far from what a `model` of the others says,
+/// which follows these with the error `without`. With a larger error fewer rows are.
+pub(super) fn stands_still(
+    recording: &Recording,
+    rows: &Range<usize>,
+    model: &[f64],
+    without: f64,
+) -> bool {
+    let Some(others) = recording.only(|n: usize| !rows.contains(&n)) else {
         return false;
     };
     let (low, high) = range(&others.input);
@@ -85,7 +89,7 @@ pub(super) fn stands_still(recording: &Recording, rows: &Range<usize>, without: 
     let off = mean(apart(&recording.output[rows.clone()], &model[rows.clone()]));
     off >= SUSPECT * without
         && recording.input[rows.clone()].iter().all(known)
-        && is_frozen(recording, Some(&model), &rows, without)
+        && is_frozen(recording, Some(model), &rows, without)
 }
 
 /// Whether one channel stands still in these rows while the other one turns, or while the output of

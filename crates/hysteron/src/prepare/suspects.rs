@@ -135,7 +135,10 @@ fn between(cuts: &[usize], len: usize) -> Vec<Vec<Range<usize>>> {
         for first in [0, 1] {
             sets.push(stretches.iter().skip(first).step_by(2).cloned().collect());
         }
-        sets.extend(stretches.into_iter().map(|stretch| vec![stretch]));
+        // Of two stretches, every other one is one of them.
+        if stretches.len() > 2 {
+            sets.extend(stretches.into_iter().map(|stretch| vec![stretch]));
+        }
     }
     sets
 }

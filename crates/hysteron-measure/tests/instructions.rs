@@ -1,0 +1,40 @@
+//! What a sample costs is counted, and does not grow unseen.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../../hysteron/tests/common/skip.rs"]
+mod skip;
+
+use std::process::{Command, Output};
+
+const TABLE: &str = include_str!("../src/text/instructions.csv");
+
+/// What a program prints, if it is there.
+fn printed(program: &str, word: &str) -> Option<String> {
+    let Output { stdout, .. } = Command::new(program).arg(word).output().ok()?;
+    Some(String::from_utf8(stdout).unwrap())
+}
+
+#[test]
+fn nothing_costs_more_instructions_than_the_table_says() {
+    if cfg!(not(target_arch = "x86_64")) || !cfg!(debug_assertions) {
+        return skip::skipped("the table is of x86-64 and of the usual build of the tests");
+    }
+    if printed("valgrind", "--version").is_none() {
+        return skip::skipped("there is no valgrind, which counts instructions");
+    }
+    // Another compiler makes other instructions: the table is counted anew with it.
+    let with = TABLE
+        .lines()
+        .find_map(|line| line.strip_prefix("# tests: "));
+    let rustc = std::env::var("RUSTC").unwrap_or("rustc".to_owned());
+    let here = printed(&rustc, "--version").unwrap();
+    if with.unwrap() != here.trim() {
+        return skip::skipped("instructions are counted with the compiler that the table names");
+    }
+    let found = Command::new(env!("CARGO_BIN_EXE_hysteron-measure"))
+        .args(["instructions", "watch"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&found.stderr);
+    assert!(found.status.success(), "{said}");
+}
