@@ -198,7 +198,7 @@ fn control(
     scheme.pid = Some(match gains {
         Some(gains) => gains,
         None => {
-            let tuned = hysteron_bench::tune(model, &scheme, true);
+            let tuned = hysteron_sim::joint::tune(model, &scheme, true);
             tuned.map_err(untuned)?.gains
         }
     });
@@ -211,7 +211,7 @@ fn control(
     Ok(scheme)
 }
 
-fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
+fn untuned(error: hysteron::Error) -> hysteron::Error {
     let what = format!("no gains come from the model ({error})");
     let remedy = Remedy::new("give them with {}", [Setting::any("gains")]);
     hysteron::Error::Export(what).remedied(remedy)
