@@ -143,3 +143,78 @@ fn relay(model: &Model, outer: &Outer, reach: &Reach) -> Result<Gains> {
         ..gains
     })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use hysteron::{Operator, Plane, Sign};
+
+    #[test]
+    fn a_model_is_tuned_with_the_margin_that_is_stated() {
+        for (weight, sign) in [
+            (0.1, Sign::Positive),
+            (3.0, Sign::Positive),
+            (1.0, Sign::Negative),
+        ] {
+            for levels in [3, 8, 20] {
+                let plane = Plane::new(1.0, 10.0, levels).unwrap();
+                let weights = vec![weight; levels * (levels + 1) / 2];
+                let model = Model::new(Operator::Mkp, plane, weights, 1.0, sign).unwrap();
+                for (delay, inverse) in [(1, false), (1, true), (3, true)] {
+                    let scheme = Scheme {
+                        delay: Some(delay),
+                        ..Scheme::new(0.05, (0.0, 10.0))
+                    };
+                    let tuned = tune(&model, &scheme, inverse).unwrap();
+                    assert!(tuned.margin >= MARGIN, "{tuned:?}");
+                    assert!(tuned.gains.gain * sign.factor() > 0.0, "{tuned:?}");
+                    assert!(tuned.gains.integral_s > 0.0);
+                }
+            }
+        }
+    }
+
+    /// A body of 2 s before the operators.
+    fn heated() -> Model {
+        let plane = Plane::new(1.0, 10.0, 8).unwrap();
+        let plain = Model::new(Operator::Mkp, plane, vec![0.1; 36], 0.0, Sign::Positive).unwrap();
+        let mut file: serde_json::Value = serde_json::from_str(&plain.to_json()).unwrap();
+        file["version"] = 2.into();
+        file["thermal"] = serde_json::json!({
+            "kind": "first-order", "ambient": 0.0, "gain": 1.0,
+            "tau_heating": 2.0, "tau_cooling": 2.0,
+        });
+        Model::from_json(&file.to_string()).unwrap()
+    }
+
+    #[test]
+    fn feedback_of_a_slow_body_is_strong_enough_for_a_disturbance() {
+        for dt in [0.02, 0.2] {
+            let scheme = Scheme::new(dt, (0.0, 12.0));
+            let model = heated();
+            let tuned = tune(&model, &scheme, true).unwrap();
+            let outer = Outer::of(&model, &scheme);
+            let course = Course::new(&model, &outer, 2000);
+            let error = |pid| course.run(pid, true, f64::INFINITY).unwrap().error;
+            let (alone, with) = (error(None), error(Some(tuned.gains)));
+            assert!(with < 0.25 * alone, "{dt}: {tuned:?}, {with} for {alone}");
+        }
+    }
+
+    #[test]
+    fn where_nothing_says_how_fast_the_plant_is_the_feedback_is_an_integral() {
+        let plane = Plane::new(1.0, 10.0, 8).unwrap();
+        let model = Model::new(Operator::Mkp, plane, vec![0.1; 36], 0.0, Sign::Positive).unwrap();
+        let scheme = Scheme::new(0.05, (0.0, 10.0));
+        let tuned = tune(&model, &scheme, true).unwrap();
+        assert_eq!(tuned.gains.integral_s, scheme.interval_s);
+        // Its proportional part does little: the model moves by 0.4 for each unit of the drive.
+        assert!(0.4 * tuned.gains.gain < 0.2, "{tuned:?}");
+        let later = Scheme {
+            delay: Some(4),
+            ..scheme
+        };
+        assert!(tune(&model, &later, true).unwrap().gains.gain < 0.5 * tuned.gains.gain);
+    }
+}

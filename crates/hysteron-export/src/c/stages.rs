@@ -14,7 +14,9 @@ pub struct CSampling {
     /// for a model with stages.
     pub drive: Option<(f64, f64)>,
     /// Whether the time of each sample is measured on the target and given to
-    /// `hys_controller_step_after`. Only for a control loop, and for a model without a ring.
+    /// `hys_controller_step_after`. Only for a control loop, and for a model without a ring: its
+    /// factors need sine, cosine and `e^x − 1`, and the library's sine of a `float` computes in
+    /// `double`, which chips have in software or not at all.
     pub measured: bool,
 }
 
@@ -242,7 +244,9 @@ fn check(model: &Model, sampling: &CSampling, bare: bool) -> Result<()> {
     }
     let rings = !model.constants().get("ring_frequency").is_empty();
     if sampling.measured && rings {
-        let what = "a ring has constants for one sample time alone on the target".into();
+        let what = "a ring has constants for one sample time alone on the target: those of a \
+                    measured one need a sine that computes in double"
+            .into();
         return refused(what, "leave {} out", "measured-dt");
     }
     match sampling.drive {
