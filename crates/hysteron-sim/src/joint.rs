@@ -2,11 +2,14 @@
 
 mod course;
 mod plant;
+mod target;
 
 use course::Course;
 use hysteron::control::{Gains, RelayTest, Scheme};
 use hysteron::{Error, Model, Result};
 use plant::{Outer, Plant, Reach};
+
+pub use target::{TargetLoop, usual_safety};
 
 /// Where the relay's two drives lie between the limits.
 const DRIVES: [f64; 2] = [0.25, 0.75];

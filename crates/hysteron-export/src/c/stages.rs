@@ -20,6 +20,28 @@ pub struct CSampling {
     pub measured: bool,
 }
 
+impl CSampling {
+    /// The sample time of a loop around `model`: of a model that depends on time. The inverse keeps
+    /// to the drives that were fitted, as in a run: at the loop's own limit it would leave the
+    /// integral no room.
+    ///
+    /// ```
+    /// use hysteron::{Model, Operator, Plane, Sign};
+    /// use hysteron_export::CSampling;
+    /// let plane = Plane::new(0.0, 1.0, 2)?;
+    /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// assert_eq!(CSampling::of_loop(&model, Some(0.05)).dt, None);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn of_loop(model: &Model, dt: Option<f64>) -> Self {
+        Self {
+            dt: dt.filter(|_| model.is_timed()),
+            ..Self::default()
+        }
+    }
+}
+
 /// Weights that depend on the load: the constants of `hys_parts`.
 pub(super) struct Parts<T> {
     /// The Everett tables, one after the other.
