@@ -4,7 +4,7 @@ mod course;
 mod plant;
 mod target;
 
-use course::Course;
+use course::{Course, Noise};
 use hysteron::control::{Gains, RelayTest, Scheme};
 use hysteron::{Error, Model, Result};
 use plant::{Outer, Plant, Reach};
@@ -73,12 +73,16 @@ pub fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
     let reach = Reach::of(model, &outer, DRIVES.map(|share| outer.drive(share)))?;
     let first = relay(model, &outer, &reach)?;
     let course = Course::new(model, &outer, reach.samples);
-    let alone = course.run(None, true, f64::INFINITY)?.travel;
-    let still = alone.max(course.usual_travel());
-    // What a run with these gains errs by; infinite where it is restless.
+    let alone = course.run(None, true, Noise::None, f64::INFINITY)?.travel;
+    let most = RESTLESS * alone.max(course.usual_travel());
+    // Without noise: what noise does to the drive is bounded by itself, and no oscillation.
+    let is_calm = |gains: Gains| {
+        let run = course.run(Some(gains), inverse, Noise::None, most)?;
+        Ok::<_, Error>(run.travel <= most)
+    };
     let error = |gains: Gains| {
-        let calm = RESTLESS * still + course.travel_of_noise(gains);
-        Ok::<_, Error>(course.run(Some(gains), inverse, calm)?.error)
+        let run = course.run(Some(gains), inverse, Noise::OfFit, f64::INFINITY)?;
+        Ok::<_, Error>(run.error)
     };
     let mut best: Option<(f64, Gains)> = None;
     let times: Vec<f64> = match outer.knows_time {
@@ -94,12 +98,9 @@ pub fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
                 integral_s,
                 ..first
             };
-            if course.noise(gains) > course.loudest() {
-                continue;
-            }
-            let doubled = error(times_gain(gains, MARGIN))?;
-            if doubled.is_finite() {
-                let wrong = error(gains)?.max(doubled);
+            let double = times_gain(gains, MARGIN);
+            if course.noise(gains) <= course.loudest() && is_calm(double)? {
+                let wrong = error(gains)?.max(error(double)?);
                 if best.is_none_or(|(least, _)| wrong < least) {
                     best = Some((wrong, gains));
                 }
@@ -111,7 +112,7 @@ pub fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
         Error::Control("the loop around the model is restless with the smallest gains".into())
     })?;
     let (mut margin, step) = (MARGIN, std::f64::consts::SQRT_2);
-    while margin < WIDEST && error(times_gain(gains, margin * step))?.is_finite() {
+    while margin < WIDEST && is_calm(times_gain(gains, margin * step))? {
         margin *= step;
     }
     Ok(Tuned { gains, margin })
@@ -199,7 +200,12 @@ mod tests {
             let tuned = tune(&model, &scheme, true).unwrap();
             let outer = Outer::of(&model, &scheme);
             let course = Course::new(&model, &outer, 2000);
-            let error = |pid| course.run(pid, true, f64::INFINITY).unwrap().error;
+            let error = |pid| {
+                course
+                    .run(pid, true, Noise::OfFit, f64::INFINITY)
+                    .unwrap()
+                    .error
+            };
             let (alone, with) = (error(None), error(Some(tuned.gains)));
             assert!(with < 0.25 * alone, "{dt}: {tuned:?}, {with} for {alone}");
         }

@@ -177,14 +177,13 @@ fn by_model(scenario: &Scenario, windows: &[usize]) -> Result<(Vec<Row>, String)
     };
     let rows = names.iter().enumerate().map(row).collect();
     // Fixed or adaptive, the gains are those of the fixed model.
-    let tuned: Vec<Tuned> = found.tuned[0].iter().copied().flatten().collect();
-    let of = |value: fn(&Tuned) -> f64| median(tuned.iter().map(value).collect());
-    let said = format!(
-        "Joint tuning: gain {:.2e}, integral time {:.2e} s, margin {:.1}",
-        of(|tuned| tuned.gains.gain),
-        of(|tuned| tuned.gains.integral_s),
-        of(|tuned| tuned.margin),
-    );
+    let first = found.tuned.first().and_then(|runs| *runs.first()?);
+    let said = first.map_or(String::new(), |Tuned { gains, margin }| {
+        let (gain, integral_s) = (gains.gain, gains.integral_s);
+        format!(
+            "Joint tuning: gain {gain:.2e}, integral time {integral_s:.2e} s, margin {margin:.1}"
+        )
+    });
     Ok((rows, said))
 }
 

@@ -18,6 +18,14 @@ pub(super) struct Course<'a> {
     samples: usize,
 }
 
+/// What is added to the readings of a run.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Noise {
+    None,
+    /// The error of the fit, as if it were noise.
+    OfFit,
+}
+
 /// What a loop did in a run.
 pub(super) struct Run {
     /// How far the drive travelled.
@@ -59,18 +67,18 @@ impl<'a> Course<'a> {
         LOUDEST * (high - low)
     }
 
-    /// How far noise may move the drive in a run beside what else does: twice as far as it would
-    /// without a plant. Of the noise of a run, a step is a third of its width on the average.
-    pub(super) fn travel_of_noise(&self, gains: Gains) -> f64 {
-        2.0 * self.noise(gains) * 12f64.sqrt() / 3.0 * self.samples as f64
-    }
-
     fn noise_of_fit(&self) -> f64 {
         self.model.fit.as_ref().map_or(0.0, |fit| fit.rmse)
     }
 
     /// A run with these gains, given up where the drive travels further than `most`.
-    pub(super) fn run(&self, pid: Option<Gains>, inverse: bool, most: f64) -> Result<Run> {
+    pub(super) fn run(
+        &self,
+        pid: Option<Gains>,
+        inverse: bool,
+        noise: Noise,
+        most: f64,
+    ) -> Result<Run> {
         let Scheme { drives, .. } = self.outer.scheme;
         let mut controller = Controller::new(Scheme {
             compensator: match inverse {
@@ -82,7 +90,10 @@ impl<'a> Course<'a> {
         })?;
         let rest = controller.rest_drive();
         let mut plant = Plant::new(self.model, self.outer, rest);
-        let noise = self.noise_of_fit();
+        let noise = match noise {
+            Noise::None => 0.0,
+            Noise::OfFit => self.noise_of_fit(),
+        };
         let begin = (SETTLES * self.samples as f64) as usize;
         let (mut drive, mut travel, mut sum) = (rest, 0.0, 0.0);
         for n in 0..self.samples {
