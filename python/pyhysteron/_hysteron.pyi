@@ -596,6 +596,11 @@ class Model:
         adaptation: bool = False,
         dt: float | None = None,
         drive_range: _Range | None = None,
+        controller: bool = False,
+        gains: Pid | None = None,
+        gate: float | None = None,
+        filter_s: float | None = None,
+        measured_dt: bool = False,
     ) -> CExport: ...
     def export_fmu(
         self,

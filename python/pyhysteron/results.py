@@ -1577,6 +1577,8 @@ class CExport(_Result):
         Loop iterations of one step at most.
     inverse_halvings : int
         Halvings of one inverse step at most.
+    controller_bytes : int or None
+        Memory of a controller beside two states, bytes; None without one.
     """
 
     files: tuple[Path, ...]
@@ -1587,6 +1589,7 @@ class CExport(_Result):
     ram_bytes: int
     step_loop: int
     inverse_halvings: int
+    controller_bytes: int | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

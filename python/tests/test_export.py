@@ -21,6 +21,24 @@ def test_c(tmp_path, real):
     assert f"typedef {real} hys_real;" in (tmp_path / "hysteron_mcu.h").read_text()
 
 
+def test_a_loop_with_gate_filter_and_measured_time(tmp_path):
+    plain = MODEL.export_c(tmp_path, name="wire", controller=True, dt=0.05)
+    assert plain.controller_bytes > 0
+    assert MODEL.export_c(tmp_path / "alone", name="wire").controller_bytes is None
+    gains = pyhysteron.control.Pid(0.25, integral_s=2.0)
+    more = {"gains": gains, "gate": 0.5, "filter_s": 0.125, "measured_dt": True}
+    full = MODEL.export_c(tmp_path, name="wire", controller=True, dt=0.05, drive_range=(25, 75), **more)
+    assert full.controller_bytes > plain.controller_bytes
+    assert {file.name for file in full.files} > {"hysteron_mcu_gate.c", "hysteron_mcu_filter.h"}
+    assert "0.25f" in (tmp_path / "wire.c").read_text()
+    assert "hys_controller_step_after" in (tmp_path / "hysteron_mcu_control.h").read_text()
+    for name, value in more.items():
+        with pytest.raises(ValueError, match=name):
+            MODEL.export_c(tmp_path, **{name: value})
+    with pytest.raises(ValueError, match="`dt`"):
+        MODEL.export_c(tmp_path, controller=True)
+
+
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("inverse", [False, True])
 def test_fmu(tmp_path, fmi, inverse):

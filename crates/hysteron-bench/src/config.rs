@@ -177,8 +177,8 @@ impl Safety {
     /// ```
     #[must_use]
     pub fn usual(dt: f64) -> (f64, f64) {
-        let few = 5.0 * dt;
-        (f64::max(0.5, few), f64::max(1.0, few))
+        let usual = hysteron_sim::joint::usual_safety(dt);
+        (usual.lost_s.unwrap_or(dt), usual.stuck_s.unwrap_or(dt))
     }
 }
 

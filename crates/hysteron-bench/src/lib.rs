@@ -43,4 +43,3 @@ pub use error::{Error, Result};
 pub use session::run;
 pub use summary::{Options, Seen, Summary};
 pub use sweep::Unmoved;
-pub use tune::{Tuned, tune};

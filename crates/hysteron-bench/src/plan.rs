@@ -6,11 +6,11 @@ use crate::learner::Beside;
 use crate::play::{Course, refuse_empty};
 use crate::protocol::Header;
 use crate::sweep::{self, Sweep};
-use crate::tune::{Tuned, tune};
+use crate::tune::tune;
 use crate::{device, error};
 use hysteron::control::{Compensator, Controller, Scheme};
 use hysteron::{AdaptOptions, Learner, Model, Sample};
-use hysteron_sim::track;
+use hysteron_sim::{joint::Tuned, track};
 
 /// Samples of a reference that a controller is told ahead, at most.
 const MOST_AHEAD: usize = 10_000;

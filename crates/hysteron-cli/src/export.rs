@@ -2,9 +2,10 @@
 
 use crate::args;
 use crate::terminal::{Result, print};
-use hysteron::control::{Gains, Safety, Scheme};
-use hysteron::{Model, Remedy, Setting};
+use hysteron::Model;
+use hysteron::control::Scheme;
 use hysteron_export::{ArduinoOptions, COptions, CSampling, Fmu, FmuOptions};
+use hysteron_sim::joint::TargetLoop;
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
@@ -19,11 +20,14 @@ fn c(args: &args::ExportC) -> Result<()> {
     let model = model(&args.model, args.load)?;
     let control = match (args.controller, args.dt) {
         (true, Some(dt)) => {
-            let plane = model.plane();
-            let range = args.drive_range.or(model.drive);
-            let drives = range.unwrap_or((plane.bottom(), plane.max()));
-            let readings = (args.gate, args.filter);
-            Some(control(&model, dt, drives, args.gains, readings)?)
+            let chosen = TargetLoop {
+                dt,
+                drives: args.drive_range,
+                gains: args.gains,
+                gate: args.gate,
+                filter_s: args.filter,
+            };
+            Some(chosen.scheme(&model)?)
         }
         _ => None,
     };
@@ -35,7 +39,7 @@ fn c(args: &args::ExportC) -> Result<()> {
         },
         Some(_) => CSampling {
             measured: args.measured_dt,
-            ..sampling(&model, args.dt)
+            ..CSampling::of_loop(&model, args.dt)
         },
     };
     let options = COptions {
@@ -122,7 +126,12 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
     // The sketches have the share of time for which current flows as the drive.
     let (low, high) = model.drive.unwrap_or((0.0, 1.0));
     let drives = args.drive_range.unwrap_or((low.max(0.0), high.min(1.0)));
-    let control = control(&model, args.dt, drives, args.gains, (None, None))?;
+    let chosen = TargetLoop {
+        drives: Some(drives),
+        gains: args.gains,
+        ..TargetLoop::new(args.dt)
+    };
+    let control = chosen.scheme(&model)?;
     let options = ArduinoOptions {
         name: args.name.as_deref(),
         source: &args.model,
@@ -131,7 +140,7 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let sampling = sampling(&model, Some(args.dt));
+    let sampling = CSampling::of_loop(&model, Some(args.dt));
     let made = hysteron_export::arduino(&model, target, &options, &sampling, &control)?;
     let (export, memory) = (made.export, made.memory);
     if args.json.json {
@@ -180,52 +189,6 @@ fn arduino(args: &args::ExportArduino) -> Result<()> {
     print(&lines.join("\n"))
 }
 
-/// A loop around a model, with gains from it where none are given, and with gate and filter.
-fn control(
-    model: &Model,
-    dt: f64,
-    drives: (f64, f64),
-    gains: Option<Gains>,
-    (gate, filter): (Option<f64>, Option<f64>),
-) -> Result<Scheme> {
-    let mut scheme = Scheme {
-        tolerance: model.usual_tolerance(),
-        delay: Some(1 + model.delay().at(Some(dt))),
-        gate,
-        filter_s: filter.unwrap_or(0.0),
-        ..Scheme::new(dt, drives)
-    };
-    scheme.pid = Some(match gains {
-        Some(gains) => gains,
-        None => {
-            let tuned = hysteron_bench::tune(model, &scheme, true);
-            tuned.map_err(untuned)?.gains
-        }
-    });
-    // As of `run`.
-    let (lost_s, stuck_s) = hysteron_bench::Safety::usual(dt);
-    scheme.safety = Safety {
-        lost_s: Some(lost_s),
-        stuck_s: Some(stuck_s),
-    };
-    Ok(scheme)
-}
-
-fn untuned(error: hysteron_bench::Error) -> hysteron::Error {
-    let what = format!("no gains come from the model ({error})");
-    let remedy = Remedy::new("give them with {}", [Setting::any("gains")]);
-    hysteron::Error::Export(what).remedied(remedy)
-}
-
-/// The sample time of a model that depends on time. In a loop the inverse keeps to the drives that
-/// were fitted, as in `run`: at the loop's own limit it would leave the integral no room.
-fn sampling(model: &Model, dt: Option<f64>) -> CSampling {
-    CSampling {
-        dt: dt.filter(|_| model.is_timed()),
-        ..CSampling::default()
-    }
-}
-
 fn loop_json(scheme: &Scheme) -> serde_json::Value {
     json!({
         "dt": scheme.interval_s,
@@ -268,8 +231,14 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     let fmu = match args.dt.zip(args.drive_range).filter(|_| args.controller) {
         None => hysteron_export::fmu(&model, &options, target)?,
         Some((dt, drives)) => {
-            let readings = (args.gate, args.filter);
-            let scheme = control(&model, dt, drives, args.gains, readings)?;
+            let chosen = TargetLoop {
+                dt,
+                drives: Some(drives),
+                gains: args.gains,
+                gate: args.gate,
+                filter_s: args.filter,
+            };
+            let scheme = chosen.scheme(&model)?;
             hysteron_export::fmu_controlled(&model, &scheme, &options, target)?
         }
     };

@@ -5,6 +5,7 @@ use crate::terminal::{Result, print, say};
 use crate::{args, progress, text};
 use hysteron::{Progress, Quantity};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
+use hysteron_sim::joint::Tuned;
 use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 use serde_json::json;
 use std::path::Path;
@@ -95,6 +96,10 @@ fn to_json(scenario: &Scenario, comparison: &Comparison) -> serde_json::Value {
         "seeds": scenario.seeds,
         "pid": comparison.gains,
         "inner_loop": comparison.inner_gains,
+        "tuned": tuned(comparison).map(|(kind, tuned)| json!({
+            "controller": kind.words(), "name": kind.name(),
+            "pid": tuned.gains, "margin": tuned.margin,
+        })).collect::<Vec<_>>(),
         "medians": comparison.medians(),
         "ratios": comparison.ratios(),
     })
@@ -166,7 +171,22 @@ fn to_text(scenario: &Scenario, comparison: &Comparison) -> String {
             text::number(gains.derivative_s)
         ));
     }
+    parts.extend(tuned(comparison).map(|(kind, tuned)| {
+        format!(
+            "{}: gain {}, integral time {} s by the model of the first run; margin {}",
+            kind.words(),
+            text::number(tuned.gains.gain),
+            text::number(tuned.gains.integral_s),
+            text::number(tuned.margin)
+        )
+    }));
     parts.join("\n\n")
+}
+
+/// The gains that come from the model, of the first run.
+fn tuned(comparison: &Comparison) -> impl Iterator<Item = (Kind, Tuned)> + '_ {
+    let each = comparison.controllers.iter().zip(&comparison.tuned);
+    each.filter_map(|(kind, runs)| Some((*kind, (*runs.first()?)?)))
 }
 
 fn number(value: f64, quantity: &Quantity) -> String {

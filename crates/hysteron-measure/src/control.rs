@@ -33,7 +33,7 @@ pub(crate) fn run(names: &[String]) -> Result<()> {
     println!("\nErrors of adaptive inverse and PID over those of the better PID alone:\n");
     list(&scenes, |scene| scene.lost_to_pid(1.0 + AS_GOOD));
     println!(
-        "\nErrors of the better PI/RLS over those of the better inverse with PID, where it wins:\n"
+        "\nErrors of the better PI/RLS over those of the best inverse with PID, where it wins:\n"
     );
     list(&scenes, |scene| scene.won_by_pi_rls(1.0 + AS_GOOD));
     print!("{}", include_str!("text/control-why.md"));

@@ -5,8 +5,12 @@ use crate::convert::result;
 use crate::error::Raise;
 use crate::integer::Integer;
 use crate::model::Model;
+use crate::pid::Pid;
+use crate::pool::detached;
 use hysteron::Destination;
 use hysteron_export::{COptions, CReal, CSampling, Fmi, FmuOptions};
+use hysteron_sim::joint::TargetLoop;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -31,8 +35,19 @@ impl Model {
     ///     The sample time in seconds, above 0. Needed by a model that depends on time, and only
     ///     by one.
     /// drive_range : tuple of float, optional
-    ///     The lowest and the highest drive that the inverse may give, for a model with stages. By
-    ///     default the model's own.
+    ///     The lowest and the highest drive that the inverse may give, for a model with stages; with
+    ///     a controller, those of the loop. By default the model's own.
+    /// controller : bool
+    ///     Also write a control loop around the model: its inverse and a PID. It needs `dt`.
+    /// gains : control.Pid, optional
+    ///     The gains of the controller. By default from the model, by simulation.
+    /// gate : float, optional
+    ///     A gate against spikes in the controller's readings: what deviates by less than this is
+    ///     never one, in the unit of the output.
+    /// filter_s : float, optional
+    ///     The time constant of a low-pass filter on the controller's readings, s.
+    /// measured_dt : bool
+    ///     Also write what takes the measured time of each sample of the controller.
     ///
     /// Returns
     /// -------
@@ -41,7 +56,10 @@ impl Model {
     /// Raises
     /// ------
     /// ExportError
-    ///     For a sample time that is missing or not needed, and for an invalid C name.
+    ///     For a sample time that is missing or not needed, for an invalid C name, and where no
+    ///     gains come from the model.
+    /// ValueError
+    ///     For a controller without `dt`, and for options of a controller without one.
     /// FileError
     ///
     /// Examples
@@ -54,6 +72,7 @@ impl Model {
     /// ['hysteron_mcu.c', 'hysteron_mcu.h', 'hysteron_mcu_internal.h', 'hysteron_mcu_inverse.c', 'wire.c', 'wire.cmake', 'wire.h', 'wire.mk']
     #[pyo3(signature = (
         folder, *, real="float", name=None, adaptation=false, dt=None, drive_range=None,
+        controller=false, gains=None, gate=None, filter_s=None, measured_dt=false,
     ))]
     #[allow(clippy::too_many_arguments)]
     fn export_c<'py>(
@@ -65,6 +84,11 @@ impl Model {
         adaptation: bool,
         dt: Option<f64>,
         drive_range: Option<(f64, f64)>,
+        controller: bool,
+        gains: Option<&Pid>,
+        gate: Option<f64>,
+        filter_s: Option<f64>,
+        measured_dt: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let real = choice(
             "real",
@@ -78,17 +102,43 @@ impl Model {
             source,
             adaptation,
         };
-        let sampling = CSampling {
-            dt,
-            drive: drive_range,
-            ..CSampling::default()
+        let chosen = match (controller, dt) {
+            (true, Some(dt)) => Some(TargetLoop {
+                dt,
+                drives: drive_range,
+                gains: gains.map(|pid| pid.gains),
+                gate,
+                filter_s,
+            }),
+            (true, None) => return Err(PyValueError::new_err("a controller needs `dt`")),
+            (false, _) => {
+                let of_one = gains.is_some() || gate.is_some() || filter_s.is_some() || measured_dt;
+                if of_one {
+                    let what = "`gains`, `gate`, `filter_s` and `measured_dt` need `controller`";
+                    return Err(PyValueError::new_err(what));
+                }
+                None
+            }
         };
-        let export = hysteron_export::c_sampled(
-            &self.inner,
-            Destination::keeping_foreign(&folder, false),
-            &options,
-            &sampling,
-        )
+        let target = Destination::keeping_foreign(&folder, false);
+        let export = match chosen {
+            None => {
+                let sampling = CSampling {
+                    dt,
+                    drive: drive_range,
+                    ..CSampling::default()
+                };
+                hysteron_export::c_sampled(&self.inner, target, &options, &sampling)
+            }
+            Some(chosen) => detached(py, || {
+                let sampling = CSampling {
+                    measured: measured_dt,
+                    ..CSampling::of_loop(&self.inner, dt)
+                };
+                let scheme = chosen.scheme(&self.inner)?;
+                hysteron_export::c_controlled(&self.inner, target, &options, &sampling, &scheme)
+            }),
+        }
         .raise()?;
         let dict = PyDict::new(py);
         dict.set_item("files", export.files)?;
@@ -99,6 +149,7 @@ impl Model {
         dict.set_item("ram_bytes", export.memory.state + export.memory.turns)?;
         dict.set_item("step_loop", export.worst_case.step)?;
         dict.set_item("inverse_halvings", export.worst_case.halvings)?;
+        dict.set_item("controller_bytes", export.memory.controller)?;
         result(py, "CExport", dict)
     }
 

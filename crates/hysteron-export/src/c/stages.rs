@@ -14,8 +14,32 @@ pub struct CSampling {
     /// for a model with stages.
     pub drive: Option<(f64, f64)>,
     /// Whether the time of each sample is measured on the target and given to
-    /// `hys_controller_step_after`. Only for a control loop, and for a model without a ring.
+    /// `hys_controller_step_after`. Only for a control loop, and for a model without a ring: its
+    /// factors need sine, cosine and `e^x − 1`, and the library's sine of a `float` computes in
+    /// `double`, which chips have in software or not at all.
     pub measured: bool,
+}
+
+impl CSampling {
+    /// The sample time of a loop around `model`: of a model that depends on time. The inverse keeps
+    /// to the drives that were fitted, as in a run: at the loop's own limit it would leave the
+    /// integral no room.
+    ///
+    /// ```
+    /// use hysteron::{Model, Operator, Plane, Sign};
+    /// use hysteron_export::CSampling;
+    /// let plane = Plane::new(0.0, 1.0, 2)?;
+    /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// assert_eq!(CSampling::of_loop(&model, Some(0.05)).dt, None);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn of_loop(model: &Model, dt: Option<f64>) -> Self {
+        Self {
+            dt: dt.filter(|_| model.is_timed()),
+            ..Self::default()
+        }
+    }
 }
 
 /// Weights that depend on the load: the constants of `hys_parts`.
@@ -242,7 +266,9 @@ fn check(model: &Model, sampling: &CSampling, bare: bool) -> Result<()> {
     }
     let rings = !model.constants().get("ring_frequency").is_empty();
     if sampling.measured && rings {
-        let what = "a ring has constants for one sample time alone on the target".into();
+        let what = "a ring has constants for one sample time alone on the target: those of a \
+                    measured one need a sine that computes in double"
+            .into();
         return refused(what, "leave {} out", "measured-dt");
     }
     match sampling.drive {

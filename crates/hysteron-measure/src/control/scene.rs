@@ -3,6 +3,7 @@
 use super::bound::bound;
 use crate::result::Result;
 use hysteron::Progress;
+use hysteron_sim::joint::Tuned;
 use hysteron_sim::track::{Comparison, Kind, Scenario, Tuning, Window, track};
 
 const KINDS: [(&str, Kind); 5] = [
@@ -12,6 +13,9 @@ const KINDS: [(&str, Kind); 5] = [
     ("inverse + PID", Kind::InversePidAnticipate),
     ("adaptive inverse + PID", Kind::AdaptivePidAnticipate),
 ];
+
+/// Those that get gains by simulation on the model too.
+const JOINT: [&str; 2] = ["inverse + PID", "adaptive inverse + PID"];
 
 /// How many times faster than the test asks the closed loop of PI/RLS is made. The best is shown.
 const SPEEDS: [f64; 5] = [1.0, 2.0, 4.0, 10.0, 20.0];
@@ -25,6 +29,8 @@ pub(super) struct Scene {
     unit: String,
     windows: Vec<Window>,
     rows: Vec<Row>,
+    /// The gains of the joint tuning, and their margins.
+    margins: String,
 }
 
 impl Scene {
@@ -49,6 +55,8 @@ impl Scene {
                 .into_iter()
                 .flatten(),
         );
+        let (tuned, margins) = by_model(&scenario, &shown)?;
+        rows.extend(tuned);
         let bound = bound(&scenario, &windows)?;
         rows.extend(bound.map(|errors| ("bound".into(), errors)));
         let [_, _, output] = scenario.plant.quantities();
@@ -58,6 +66,7 @@ impl Scene {
             unit: output.unit.unwrap_or_default(),
             windows,
             rows,
+            margins,
         })
     }
 
@@ -70,6 +79,7 @@ impl Scene {
             let cells = errors.iter().map(|error| format!("{error:.3}"));
             println!("| {name} | {} |", cells.collect::<Vec<_>>().join(" | "));
         }
+        println!("\n{}.", self.margins);
     }
 
     /// Where an adaptive inverse has more than `most` times the error of the fixed one.
@@ -93,16 +103,17 @@ impl Scene {
             .collect()
     }
 
-    /// Where the better PI/RLS has a smaller error than the better one of the two with an inverse
-    /// and PID, by more than a factor of `most`.
+    /// Where the better PI/RLS has a smaller error than the best one of those with an inverse and
+    /// PID, by more than a factor of `most`.
     pub(super) fn won_by_pi_rls(&self, most: f64) -> Vec<String> {
         let rows = self
             .rows
             .iter()
             .filter(|(name, _)| name.starts_with("PI/RLS"));
         let won = rows.flat_map(|(name, _)| {
-            let both = ["inverse + PID", "adaptive inverse + PID"];
-            self.lost(name, &both, 0.0).into_iter()
+            let joint = JOINT.map(|name| format!("{name}{}", by(Tuning::Model)));
+            let all = JOINT.into_iter().chain(joint.iter().map(String::as_str));
+            self.lost(name, &all.collect::<Vec<_>>(), 0.0).into_iter()
         });
         let mut best = vec![f64::INFINITY; self.windows.len()];
         won.for_each(|(w, ratio)| best[w] = best[w].min(ratio));
@@ -130,6 +141,7 @@ fn by(tuning: Tuning) -> &'static str {
     match tuning {
         Tuning::Relay => ", relay test",
         Tuning::Step => ", step test",
+        Tuning::Model => ", joint tuning",
     }
 }
 
@@ -137,7 +149,7 @@ fn with_the_other_test(scenario: &Scenario) -> Scenario {
     let mut scenario = scenario.clone();
     scenario.shared.tuning = match scenario.shared.tuning {
         Tuning::Relay => Tuning::Step,
-        Tuning::Step => Tuning::Relay,
+        _ => Tuning::Relay,
     };
     scenario
 }
@@ -149,6 +161,30 @@ fn row(scenario: &Scenario, kind: Kind, windows: &[usize]) -> Option<Row> {
     let found = track(&scenario, Progress::NONE).ok()?;
     let name = format!("{}{}", kind.words(), by(scenario.shared.tuning));
     Some((name, medians(&found, 0, windows)))
+}
+
+/// Inverse and PID with the gains of the joint tuning, and what these are.
+fn by_model(scenario: &Scenario, windows: &[usize]) -> Result<(Vec<Row>, String)> {
+    let mut scenario = scenario.clone();
+    scenario.shared.tuning = Tuning::Model;
+    let kinds = KINDS.iter().filter(|(name, _)| JOINT.contains(name));
+    let (names, kinds): (Vec<&str>, Vec<Kind>) = kinds.copied().unzip();
+    scenario.controllers = kinds;
+    let found = track(&scenario, Progress::NONE)?;
+    let row = |(k, name): (usize, &&str)| {
+        let name = format!("{name}{}", by(Tuning::Model));
+        (name, medians(&found, k, windows))
+    };
+    let rows = names.iter().enumerate().map(row).collect();
+    // Fixed or adaptive, the gains are those of the fixed model.
+    let first = found.tuned.first().and_then(|runs| *runs.first()?);
+    let said = first.map_or(String::new(), |Tuned { gains, margin }| {
+        let (gain, integral_s) = (gains.gain, gains.integral_s);
+        format!(
+            "Joint tuning: gain {gain:.2e}, integral time {integral_s:.2e} s, margin {margin:.1}"
+        )
+    });
+    Ok((rows, said))
 }
 
 /// PI/RLS with the speed of the smallest geometric mean of its errors: no window decides alone.

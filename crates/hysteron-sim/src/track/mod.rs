@@ -27,6 +27,7 @@ pub use scenario::Scenario;
 pub use score::{ReversalLag, Score, Window, reversal_lags};
 pub use summary::{Median, Ratio};
 
+use crate::joint::Tuned;
 use hysteron::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run_with};
 use hysteron::{Error, Model, Progress, Result, headings};
 use rayon::prelude::*;
@@ -51,8 +52,12 @@ pub struct Comparison {
     pub traces: Vec<Trace>,
     /// The model identified for the first seed.
     pub model: Model,
-    /// Gains of the PID, by the scenario's [`Tuning`]; none where no controller has one.
+    /// Gains of the PID, by the scenario's [`Tuning`]; none where no controller has one, or where
+    /// each has its own.
     pub gains: Option<Gains>,
+    /// Gains by [`Tuning::Model`] and their margin, by controller, seed; none by another tuning,
+    /// and of a controller without PID.
+    pub tuned: Vec<Vec<Option<Tuned>>>,
     /// Gains of the loop inside, by SIMC; none where there is none.
     pub inner_gains: Option<Gains>,
 }
@@ -113,8 +118,13 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
         *finished += more;
         progress.tell("runs", *finished as f64 / total as f64)
     };
-    type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
-    let seeds: Vec<Seed> = (1..=u64::from(scenario.seeds))
+    struct Ran {
+        trace: Option<Trace>,
+        scores: Vec<Score>,
+        tuned: Option<Tuned>,
+    }
+    let by_model = scenario.shared.tuning == Tuning::Model;
+    let seeds: Vec<(Model, Vec<Ran>)> = (1..=u64::from(scenario.seeds))
         .into_par_iter()
         .map(|seed| {
             // Recordings and runs do not share their noise.
@@ -125,6 +135,11 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
                     plant.write(drive);
                     plant.advance(time_s);
                 }
+                let tuned = match by_model && kind.has_pid() {
+                    true => Some(tune::by_model(scenario, &scheme, &model, *kind)?),
+                    false => None,
+                };
+                let gains = tuned.map(|tuned| tuned.gains).or(gains);
                 let mut tuner = match (kind, gains) {
                     (Kind::PiRls, Some(gains)) => SelfTuning::new(scenario, &scheme, gains),
                     _ => None,
@@ -144,14 +159,21 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
                 let score = |window| Score::new(&trace, window, scheme.drives, &model);
                 let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
                 tell(1)?;
-                Ok(((seed == 1).then_some(trace), scores))
+                Ok(Ran {
+                    trace: (seed == 1).then_some(trace),
+                    scores,
+                    tuned,
+                })
             });
             let runs = runs.collect::<Result<Vec<_>>>()?;
             Ok((model, runs))
         })
         .collect::<Result<_>>()?;
-    let of_controller = |k: usize| seeds.iter().map(|(_, runs)| runs[k].1.clone()).collect();
-    let scores = (0..scenario.controllers.len()).map(of_controller).collect();
+    let controllers = 0..scenario.controllers.len();
+    let scores = |k: usize| seeds.iter().map(move |(_, runs)| runs[k].scores.clone());
+    let scores = controllers.clone().map(|k| scores(k).collect()).collect();
+    let tuned = |k: usize| seeds.iter().map(move |(_, runs)| runs[k].tuned);
+    let tuned = controllers.map(|k| tuned(k).collect()).collect();
     let mut seeds = seeds.into_iter();
     let (model, runs) = seeds.next().ok_or_else(|| Error::Scenario {
         path: None,
@@ -164,9 +186,10 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
         controllers: scenario.controllers.clone(),
         windows,
         scores,
-        traces: runs.into_iter().filter_map(|(trace, _)| trace).collect(),
+        traces: runs.into_iter().filter_map(|ran| ran.trace).collect(),
         model,
         gains,
+        tuned,
         inner_gains: scheme.inner.map(|inner| inner.gains),
     })
 }
@@ -182,7 +205,7 @@ pub fn tune(scenario: &Scenario) -> Result<(Scheme, Option<Gains>)> {
         scheme.inner = Some(tune::inner(scenario, &scheme)?);
     }
     let gains = match scenario.controllers.iter().any(|kind| kind.has_pid()) {
-        true => Some(tune::outer(scenario, &scheme)?),
+        true => tune::outer(scenario, &scheme)?,
         false => None,
     };
     Ok((scheme, gains))

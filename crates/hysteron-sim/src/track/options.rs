@@ -63,6 +63,9 @@ pub enum Tuning {
     Relay,
     /// Step test on the rising branch, SIMC (Skogestad 2003).
     Step,
+    /// Simulation of the loop around the model of each run ([`joint`](crate::joint)), with the
+    /// inverse where the controller has one. So each controller has gains of its own.
+    Model,
 }
 
 /// A model that learns in the loop of the adaptive controllers.

@@ -325,6 +325,29 @@ fn both_rules_give_gains_on_both_plants() {
 }
 
 #[test]
+fn each_controller_has_gains_of_its_own_from_the_model_of_its_run() {
+    for (base, sine, duration) in [(SPRING, SPRING_SINE, 130), (RELAYS, RELAYS_SINE, 10)] {
+        let more = format!(
+            "duration_s = {duration}\ncontrollers = [\"pid\", \"inverse\", \"inverse-pid\"]"
+        );
+        let mut one = scenario(&[base, &more, sine]);
+        one.shared.tuning = hysteron_sim::track::Tuning::Model;
+        let found = track(&one, Progress::NONE).unwrap();
+        assert!(found.gains.is_none());
+        let [pid, inverse, both] = [0, 1, 2].map(|k| &found.tuned[k]);
+        assert!(inverse.iter().all(Option::is_none));
+        assert_eq!(pid.len(), one.seeds as usize);
+        for tuned in pid.iter().chain(both) {
+            let tuned = tuned.unwrap();
+            assert!(tuned.margin >= 2.0 && tuned.gains.gain > 0.0, "{tuned:?}");
+        }
+        // The feedback does no harm.
+        let [alone, with] = [1, 2].map(|k| found.scores[k][0][0].rmse);
+        assert!(with < alone, "{base}: {with} for {alone}");
+    }
+}
+
+#[test]
 fn a_plant_that_does_not_answer_is_refused() {
     let weak = [
         (
