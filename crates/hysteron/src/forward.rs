@@ -45,6 +45,7 @@ pub fn forward(
     start: Start,
 ) -> Result<Forward> {
     let recordings = recordings.as_ref();
+    recordings.iter().try_for_each(|r| model.check_units(r))?;
     let (mut output_model, mut errors) = (Vec::new(), Vec::new());
     for recording in recordings {
         recording.check()?;

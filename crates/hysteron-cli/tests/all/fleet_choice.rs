@@ -256,3 +256,44 @@ fn read(table: &Path) -> Vec<hysteron::FleetRow> {
     .unwrap();
     rows
 }
+
+/// Models are asked only of who is unusual: rows in another unit make it so.
+#[test]
+fn rows_of_another_unit_are_found_in_a_fleet_with_pilots() {
+    let bench = tempfile::tempdir().unwrap();
+    let folder = bench.path();
+    fleet(folder, 8, &[BROAD; 28]);
+    let table = folder.join("fleet.csv");
+    let mut all: Vec<String> = fs::read_to_string(&table)
+        .unwrap()
+        .lines()
+        .map(Into::into)
+        .collect();
+    // By its name it is no pilot.
+    for line in all
+        .iter_mut()
+        .filter(|line| line.starts_with("a017,"))
+        .skip(60)
+        .take(40)
+    {
+        let (others, y) = line.rsplit_once(',').unwrap();
+        *line = format!("{others},{}", 10.0 * y.parse::<f64>().unwrap());
+    }
+    fs::write(&table, all.join("\n")).unwrap();
+    let options = FleetOptions {
+        by: Some("id"),
+        ..FleetOptions::new(Columns::new("x", "y"), Fit::new().levels(8).bootstrap(0))
+    };
+    let target = folder.join("models.parquet");
+    let to = target.as_path().into();
+    let found = fit_fleet(&[table], &options, to, Progress::NONE).unwrap();
+    assert!(found.shared.is_some());
+    let doubted = |row: &&hysteron::FleetRow| row.warnings.iter().any(|w| w.contains("disagree"));
+    let rows = read(&target);
+    let ids: Vec<&str> = rows
+        .iter()
+        .filter(doubted)
+        .map(|row| row.id.as_str())
+        .collect();
+    assert_eq!(ids, ["a017"]);
+}

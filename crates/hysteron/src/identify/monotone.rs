@@ -3,8 +3,8 @@
 use crate::error::Result;
 use crate::model::Sign;
 use crate::recording::Recording;
-use crate::series::coarse::hides_noise;
-use crate::series::noise::{furthest, noise};
+use crate::series::coarse::noise_behind;
+use crate::series::noise::furthest;
 use crate::series::{headings, usual_tolerance};
 use hysteron_core::Direction;
 
@@ -33,11 +33,7 @@ pub const AGAINST_INPUT: f64 = 0.1;
 /// [`crate::Error::Recording`] for an invalid recording.
 pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     recording.check()?;
-    // Where the input jumps, an answer cannot be told from noise.
-    let white = match hides_noise(&recording.input) {
-        true => 0.0,
-        false => noise(&recording.output),
-    };
+    let white = noise_behind(&recording.input, &recording.output);
     let tolerance = usual_tolerance(&recording.output).max(furthest(recording.len()) * white);
     let headings = headings(&recording.input, usual_tolerance(&recording.input));
     let (mut with, mut against) = (0.0, 0.0);

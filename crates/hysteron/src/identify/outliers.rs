@@ -94,19 +94,18 @@ fn judged(
         let few = few(mended, mended);
         let mut problem = Problem::new(&few, options)?;
         let fitted = problem.solve(None, Progress::NONE)?;
-        let sign = fitted.sign.factor();
         match few {
             Cow::Borrowed(_) => {
+                let sign = fitted.sign.factor();
                 let mut residual = fitted.solution.residual;
                 residual.iter_mut().for_each(|r| *r *= sign);
                 residual
             }
             Cow::Owned(_) => {
                 let all = Experiment::new(mended, options)?;
-                let mut left = problem.predict_over(&all, &fitted.solution)?;
-                let offset = options.offset.unwrap_or(0.0);
+                let mut left = problem.outputs_over(&all, &fitted)?;
                 let pairs = left.iter_mut().zip(all.output.iter());
-                pairs.for_each(|(h, y)| *h = y - offset - sign * *h);
+                pairs.for_each(|(h, y)| *h = y - *h);
                 left
             }
         }

@@ -69,6 +69,8 @@ fn spelt(unit: &str) -> String {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::model::{Plane, Sign, Start};
+    use hysteron_core::Operator;
 
     #[test]
     fn units_are_compared_however_they_are_written() {
@@ -107,6 +109,23 @@ mod tests {
         for (one, other) in other {
             let refused = one.check_unit("input", &other).unwrap_err().to_string();
             assert!(refused.contains("convert the column"), "{refused}");
+        }
+    }
+
+    #[test]
+    fn no_model_is_judged_on_data_in_another_unit() {
+        let plane = Plane::new(1.0, 4.0, 4).unwrap();
+        let mut model =
+            Model::new(Operator::Mkp, plane, vec![1.0; 10], 0.0, Sign::Positive).unwrap();
+        let input: Vec<f64> = (0..40).map(|n| 2.0 + (f64::from(n) * 0.3).sin()).collect();
+        let mut recording = Recording::new(input.clone(), input).unwrap();
+        for unit in ["degC", "degF"] {
+            model.input = Quantity::with_unit("T", "degC");
+            recording.input_quantity = Quantity::with_unit("T", unit);
+            let is_taken = unit == "degC";
+            let ran = crate::forward(&model, &recording, Start::Off).is_ok();
+            let judged = crate::evaluate_from(&model, &recording, Start::Off).is_ok();
+            assert_eq!([ran, judged], [is_taken; 2], "{unit}");
         }
     }
 }

@@ -6,7 +6,7 @@
 //! why (`explained`): a change of their unit, or an exchange of their columns, makes them agree, or
 //! a channel stands still.
 
-use super::explained::{explained, stands_still};
+use super::explained::{explained, may_stand_still, stands_still};
 use super::judge::{apart, from_kept, mean, unseen};
 use super::suspects::{Suspect, all_jumps, of_models, of_the_series, with_that_of_the_error};
 use crate::recording::Recording;
@@ -165,7 +165,10 @@ fn compared(
     let span = usual_span(&output).min(usual_span(&recording.output));
     let harms = with > least * span;
     // Only a channel that stands still may do less harm. All others need no models then.
-    let may_stand = suspect.at_sight && rows.len() == 1 && suspect.way.is_none();
+    let may_stand = suspect.at_sight
+        && rows.len() == 1
+        && suspect.way.is_none()
+        && may_stand_still(recording, &rows[0], all);
     let model = may_stand.then(|| from_kept(recording, &kept)).flatten();
     let stands = |without| {
         let stands = |model: &Vec<f64>| stands_still(recording, &rows[0], model, without);

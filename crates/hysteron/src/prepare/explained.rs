@@ -21,6 +21,8 @@ const TURNS: f64 = 0.1;
 /// share of the usual range. The first number is for the way there, the second for the way back.
 const TIMES: [f64; 2] = [10.0, 4.0];
 const CLEARLY: [f64; 2] = [0.05, 0.02];
+/// A model that has seen the rows moves by at least this share of that.
+const SEEN: f64 = 0.5;
 /// There a channel stands still if it moves by at most this share of its usual range.
 const STILL: f64 = 0.02;
 
@@ -72,6 +74,17 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
     found.into_iter().flatten().any(|off| off <= enough)
 }
 
+/// Whether rows in which a channel stands still may be far from what a model of the others says, by
+/// what one says that has seen `all` rows. That one comes some way towards them.
+pub(super) fn may_stand_still(recording: &Recording, rows: &Range<usize>, all: &[f64]) -> bool {
+    is_still_beside(
+        recording,
+        Some(all),
+        rows,
+        CLEARLY.map(|share| SEEN * share),
+    )
+}
+
 /// Whether rows in which a channel stands still are far from what a `model` of the others says,
 /// which follows these with the error `without`. With a larger error fewer rows are.
 pub(super) fn stands_still(
@@ -101,17 +114,25 @@ fn is_frozen(
     rows: &Range<usize>,
     without: f64,
 ) -> bool {
+    let error = without / usual_span(&recording.output);
+    let far = |most: f64, n: usize| (TIMES[n] * error).max(CLEARLY[n]).min(most);
+    is_still_beside(recording, model, rows, [far(MOVES, 0), far(TURNS, 1)])
+}
+
+/// Whether one channel stands still in these rows while the other one, or the output of the `model`,
+/// goes one way and back by these shares of the usual range of the output.
+fn is_still_beside(
+    recording: &Recording,
+    model: Option<&[f64]>,
+    rows: &Range<usize>,
+    [there, back]: [f64; 2],
+) -> bool {
     let (input, output) = (&recording.input, &recording.output);
     let is_still = |values: &[f64]| usual_span(&values[rows.clone()]) <= STILL * usual_span(values);
     let span = usual_span(output);
-    let far = |share, n: usize| {
-        (TIMES[n] * without)
-            .max(CLEARLY[n] * span)
-            .min(share * span)
-    };
     let turns = |values: &[f64]| {
         let (rise, fall) = rise_and_fall(&values[rows.clone()]);
-        rise.max(fall) >= far(MOVES, 0) && rise.min(fall) >= far(TURNS, 1)
+        rise.max(fall) >= there * span && rise.min(fall) >= back * span
     };
     is_still(input) && turns(output) || is_still(output) && model.is_some_and(turns)
 }

@@ -1,5 +1,6 @@
 //! Series that jump from reading to reading: set points, or few rows on a stroke.
 
+use crate::series::noise::noise;
 use crate::series::range;
 
 /// A step of more than this share of the range is a jump: fewer than seven rows to a stroke.
@@ -21,8 +22,17 @@ pub(crate) fn goes_by_jumps(values: &[f64]) -> bool {
     far.iter().sum::<f64>() > near.iter().sum()
 }
 
+/// Standard deviation of the white noise of an output, as far as it can be told: 0 where an answer
+/// to the input cannot be told from noise.
+pub(crate) fn noise_behind(input: &[f64], output: &[f64]) -> f64 {
+    match hides_noise(input) {
+        true => 0.0,
+        false => noise(output),
+    }
+}
+
 /// Whether the noise of what follows this input cannot be told from neighbours: these are elsewhere.
-pub(crate) fn hides_noise(values: &[f64]) -> bool {
+fn hides_noise(values: &[f64]) -> bool {
     let (far, _) = steps(values);
     SELDOM * far.len() > values.len()
 }

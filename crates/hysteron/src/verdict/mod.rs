@@ -30,7 +30,7 @@ use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Quantity, Recording, no_recordings, one_speed};
 use crate::rivals::{Rival, RivalKind, SMALL};
 use crate::series::Errors;
-use crate::series::coarse::hides_noise;
+use crate::series::coarse::noise_behind;
 use crate::series::noise::noise;
 use grade::GOOD;
 use std::borrow::Cow;
@@ -331,14 +331,11 @@ fn line(recordings: &[Recording]) -> Result<Option<(String, f64)>> {
 fn noise_of(recordings: &[Recording], modelled: &[f64]) -> f64 {
     let (mut samples, mut squares, mut first) = (0.0, 0.0, 0);
     for recording in recordings {
-        let mut found = noise(&recording.output);
+        let mut found = noise_behind(&recording.input, &recording.output);
         if let Some(modelled) = modelled.get(first..first + recording.len()) {
             let pairs = recording.output.iter().zip(modelled);
             let left: Vec<f64> = pairs.map(|(y, h)| y - h).collect();
             found = found.min(noise(&left));
-        }
-        if hides_noise(&recording.input) {
-            found = 0.0;
         }
         first += recording.len();
         samples += recording.len() as f64;

@@ -7,7 +7,7 @@ use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::{Choice, FitOptions, Spacing};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
-use crate::model::{Sign, Smooth};
+use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::fair_range;
@@ -123,17 +123,7 @@ pub fn left_out(
 /// The output at every sample, from a fit to the samples that are kept.
 fn without(problem: &mut Problem<'_>, kept: &[f64]) -> Result<Vec<f64>> {
     let fitted = problem.solve(Some(kept), Progress::NONE)?;
-    let states = problem.predict(&fitted.solution)?;
-    Ok(outputs(problem, fitted.sign, states))
-}
-
-/// The outputs to what a model without offset and sign gives.
-fn outputs(problem: &Problem<'_>, sign: Sign, mut states: Vec<f64>) -> Vec<f64> {
-    let offset = problem.options.offset.unwrap_or(0.0);
-    states
-        .iter_mut()
-        .for_each(|h| *h = offset + sign.factor() * *h);
-    states
+    problem.outputs(&fitted)
 }
 
 /// The output at each sample of one recording, from the fit that left its fold out. Samples without
@@ -201,8 +191,7 @@ fn each_kept(
     for f in 0..count {
         let kept: Vec<f64> = samples.iter().map(|n| kept(f, *n)).collect();
         let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-        let states = problem.predict_over(&all, &fitted.solution)?;
-        done(f, outputs(&problem, fitted.sign, states));
+        done(f, problem.outputs_over(&all, &fitted)?);
     }
     Ok(())
 }

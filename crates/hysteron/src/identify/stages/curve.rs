@@ -213,9 +213,7 @@ impl<'a> Search<'a> {
 fn sums(recordings: &[Recording], options: &FitOptions, kept: Option<&[f64]>) -> Result<Vec<f64>> {
     let mut problem = Problem::new(recordings, options)?;
     let fitted = problem.solve(kept, Progress::NONE)?;
-    let (offset, sign) = (options.offset.unwrap_or(0.0), fitted.sign.factor());
-    let predicted = problem.predict(&fitted.solution)?;
-    Ok(predicted.iter().map(|h| offset + sign * h).collect())
+    problem.outputs(&fitted)
 }
 
 /// The monotone curve of so many equal pieces that is nearest to the outputs that count, by least

@@ -9,8 +9,7 @@ use crate::identify::weights::problem::Problem;
 use crate::model::{CreepTerm, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::coarse::hides_noise;
-use crate::series::noise::noise;
+use crate::series::coarse::noise_behind;
 use crate::series::{fair_range, fair_range_of_all, range};
 
 /// Each recording is divided into this many blocks of time; those with an odd number are left out
@@ -105,11 +104,8 @@ pub(super) fn fine(options: &FitOptions, open: Open) -> FitOptions {
 /// The white noise of the outputs, in percent of their range, as far as it can be told.
 pub(super) fn noise_percent(recordings: &[Recording]) -> f64 {
     let (low, high) = fair_range_of_all(recordings.iter().map(|recording| &recording.output));
-    let told = recordings
-        .iter()
-        .filter(|recording| !hides_noise(&recording.input));
-    let worst = told.map(|recording| noise(&recording.output));
-    let worst = worst.fold(0.0, f64::max);
+    let told = recordings.iter().map(|r| noise_behind(&r.input, &r.output));
+    let worst = told.fold(0.0, f64::max);
     100.0 * worst / (high - low)
 }
 
@@ -335,10 +331,7 @@ impl<'a> Search<'a> {
                 .map(|b| f64::from(Some(*b) != *part))
                 .collect();
             let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-            let predicted = problem.predict(&fitted.solution)?;
-            let sign = fitted.sign.factor();
-            let offset = options.offset.unwrap_or(0.0);
-            let sums: Vec<f64> = predicted.iter().map(|h| offset + sign * h).collect();
+            let sums = problem.outputs(&fitted)?;
             let outputs = forward(after, self.recordings, &sums)?;
             squares += outputs
                 .iter()

@@ -99,6 +99,24 @@ impl<'a> Problem<'a> {
         Ok(output)
     }
 
+    /// The outputs at every sample, in their unit and with their sign, whether it was kept or not.
+    /// A known offset is among them.
+    pub(crate) fn outputs(&self, fitted: &Fitted) -> Result<Vec<f64>> {
+        self.outputs_over(&self.experiment, fitted)
+    }
+
+    /// As [`Problem::outputs`], over the same recordings with more samples.
+    pub(crate) fn outputs_over(
+        &self,
+        experiment: &Experiment<'_>,
+        fitted: &Fitted,
+    ) -> Result<Vec<f64>> {
+        let mut outputs = self.predict_over(experiment, &fitted.solution)?;
+        let (offset, sign) = (self.options.offset.unwrap_or(0.0), fitted.sign.factor());
+        outputs.iter_mut().for_each(|h| *h = offset + sign * *h);
+        Ok(outputs)
+    }
+
     /// Offset and weights for each function of the load, converted from states in `[0, 1]` to the
     /// operator's own outputs.
     pub(crate) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
