@@ -27,7 +27,7 @@ fn nothing_costs_more_instructions_than_the_table_says() {
         .lines()
         .find_map(|line| line.strip_prefix("# tests: "));
     let rustc = std::env::var("RUSTC").unwrap_or("rustc".to_owned());
-    let here = printed(&rustc, "--version").unwrap();
+    let here = printed(&rustc, "--version").unwrap_or_default();
     if with.unwrap() != here.trim() {
         return skip::skipped("instructions are counted with the compiler that the table names");
     }

@@ -32,8 +32,8 @@ impl Model {
     /// adaptation : bool
     ///     Also write the code that learns there: by increments, drift or least squares.
     /// dt : float, optional
-    ///     The sample time in seconds, above 0. Needed by a model that depends on time, and only
-    ///     by one.
+    ///     The sample time in seconds, above 0. Needed by a model that depends on time and by a
+    ///     controller, and only by these.
     /// drive_range : tuple of float, optional
     ///     The lowest and the highest drive that the inverse may give, for a model with stages; with
     ///     a controller, those of the loop. By default the model's own.

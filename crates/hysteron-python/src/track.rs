@@ -129,7 +129,8 @@ impl Comparison {
         self.inner.model.clone().into()
     }
 
-    /// A PID with the gains that all had; None where no controller has one.
+    /// A PID with the gains that all had; None where no controller has one, or each has gains from
+    /// its model.
     #[getter]
     fn pid(&self) -> Option<Pid> {
         self.inner.gains.map(Pid::from_gains)
@@ -235,7 +236,7 @@ pub(crate) fn track(
 /// Returns
 /// -------
 /// pid : Pid or None
-///     Feedback of the output; None where no controller has one.
+///     Feedback of the output; None where no controller has one, or each has gains from its model.
 /// inner : Pid or None
 ///     The loop around the temperature, whose drive is a square root; None where there is none.
 ///

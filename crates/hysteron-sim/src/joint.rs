@@ -13,8 +13,10 @@ pub use target::{TargetLoop, usual_safety};
 
 /// Where the relay's two drives lie between the limits.
 const DRIVES: [f64; 2] = [0.25, 0.75];
-/// Samples within which the relay test has to come to its end.
+/// Samples within which the relay test has to come to its end, and latencies of a plant that is
+/// late: nine swings take some 18.
 const PATIENCE: usize = 20_000;
+const LATENCIES: usize = 40;
 /// Factors on the gain that are tried, from the largest down by halves. That of a slow body, which a
 /// relay hardly moves within a sample, has to shrink a thousandfold.
 const LARGEST: f64 = 16.0;
@@ -48,7 +50,8 @@ pub struct Tuned {
 /// err least, also when they are doubled (after Åström & Hägglund 2006: the least error after a
 /// disturbance, under a bound of the robustness).
 ///
-/// Noise moves the drive by at most a twentieth of its range (a standard deviation).
+/// Through the proportional part, noise moves the drive by at most a twentieth of its range (a
+/// standard deviation).
 ///
 /// A model without [stages](hysteron::Stages) answers at once, and does not know how fast the plant
 /// is. Its feedback is an integral, made for a plant that is ten times as late. A plant with a
@@ -109,7 +112,9 @@ pub fn tune(model: &Model, scheme: &Scheme, inverse: bool) -> Result<Tuned> {
         }
     }
     let (_, gains) = best.ok_or_else(|| {
-        Error::Control("the loop around the model is restless with the smallest gains".into())
+        let what = "the loop around the model is restless, or moved by noise, with the smallest \
+                    gains";
+        Error::Control(what.into())
     })?;
     let (mut margin, step) = (MARGIN, std::f64::consts::SQRT_2);
     while margin < WIDEST && is_calm(times_gain(gains, margin * step))? {
@@ -130,7 +135,7 @@ fn relay(model: &Model, outer: &Outer, reach: &Reach) -> Result<Gains> {
     let sign = if to < from { -1.0 } else { 1.0 };
     let mut plant = Plant::new(model, outer, drives[0]);
     let mut test = RelayTest::new(drives.into(), sign * middle, 0.0)?;
-    for _ in 0..PATIENCE {
+    for _ in 0..PATIENCE.max(LATENCIES * outer.latency()) {
         test.push(sign * plant.step(test.command())?);
         if test.is_done() {
             break;
@@ -165,7 +170,7 @@ mod tests {
                 let plane = Plane::new(1.0, 10.0, levels).unwrap();
                 let weights = vec![weight; levels * (levels + 1) / 2];
                 let model = Model::new(Operator::Mkp, plane, weights, 1.0, sign).unwrap();
-                for (delay, inverse) in [(1, false), (1, true), (3, true)] {
+                for (delay, inverse) in [(1, false), (1, true), (3, true), (120, true)] {
                     let scheme = Scheme {
                         delay: Some(delay),
                         ..Scheme::new(0.05, (0.0, 10.0))

@@ -257,7 +257,6 @@ fn read(table: &Path) -> Vec<hysteron::FleetRow> {
     rows
 }
 
-/// Models are asked only of who is unusual: rows in another unit make it so.
 #[test]
 fn rows_of_another_unit_are_found_in_a_fleet_with_pilots() {
     let bench = tempfile::tempdir().unwrap();

@@ -21,7 +21,7 @@ pub struct CSampling {
 }
 
 impl CSampling {
-    /// The sample time of a loop around `model`: of a model that depends on time. The inverse keeps
+    /// For a loop around `model`, with its sample time if the model depends on time. The inverse keeps
     /// to the drives that were fitted, as in a run: at the loop's own limit it would leave the
     /// integral no room.
     ///

@@ -79,7 +79,9 @@ impl Scene {
             let cells = errors.iter().map(|error| format!("{error:.3}"));
             println!("| {name} | {} |", cells.collect::<Vec<_>>().join(" | "));
         }
-        println!("\n{}.", self.margins);
+        if !self.margins.is_empty() {
+            println!("\n{}.", self.margins);
+        }
     }
 
     /// Where an adaptive inverse has more than `most` times the error of the fixed one.
@@ -149,7 +151,9 @@ fn with_the_other_test(scenario: &Scenario) -> Scenario {
     let mut scenario = scenario.clone();
     scenario.shared.tuning = match scenario.shared.tuning {
         Tuning::Relay => Tuning::Step,
-        _ => Tuning::Relay,
+        Tuning::Step => Tuning::Relay,
+        // Both are beside it.
+        Tuning::Model => Tuning::Relay,
     };
     scenario
 }

@@ -7,7 +7,7 @@ use hysteron::{Model, Result};
 
 /// What is added to the drive in every second quarter of a run, as a share of its range.
 const DISTURBANCE: f64 = 0.05;
-/// How much noise may move the drive: a standard deviation, as a share of its range.
+/// How much noise may move the drive through the proportional part: a standard deviation, as a share of its range.
 const LOUDEST: f64 = 0.05;
 /// The first part of a run, which does not count.
 const SETTLES: f64 = 0.125;
@@ -49,7 +49,7 @@ impl<'a> Course<'a> {
         (high - low) * self.samples as f64 / SHORTEST as f64
     }
 
-    /// The standard deviation of what noise does to the drive from sample to sample.
+    /// The standard deviation of what noise does to the drive through the proportional part.
     pub(super) fn noise(&self, gains: Gains) -> f64 {
         let Scheme {
             interval_s,

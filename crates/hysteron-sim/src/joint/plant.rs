@@ -15,6 +15,8 @@ pub(super) const SHORTEST: usize = 600;
 const LONGEST: usize = 4800;
 /// How many times the model can answer a step within a run.
 const ANSWERS: usize = 20;
+/// However late it answers, so many times it can within a run.
+const LATENCIES: usize = 10;
 /// The share of its way at which a model has answered, and the share by which it still moves in the
 /// shortest run when it has come to rest.
 const ANSWERED: f64 = 0.9;
@@ -40,7 +42,7 @@ impl Outer {
                     Some(_) => scheme.commands,
                     None => scheme.drives,
                 },
-                delay: Some(scheme.due().max(1)),
+                delay: Some(scheme.delay.unwrap_or_else(|| late(model, scheme)).max(1)),
                 inner: None,
                 compensator: None,
                 stuck_s: None,
@@ -69,6 +71,11 @@ impl Outer {
         let (low, high) = self.scheme.drives;
         low + share * (high - low)
     }
+}
+
+/// Samples from a drive until its effect is read, where the scheme does not say.
+fn late(model: &Model, scheme: &Scheme) -> usize {
+    usize::from(scheme.inner.is_none()) + model.delay().at(Some(scheme.interval_s))
 }
 
 /// The model, each drive seen so many samples after it was given.
@@ -135,7 +142,7 @@ impl Reach {
         }
         Ok(Self {
             outputs,
-            samples: (ANSWERS * slowest).clamp(SHORTEST, LONGEST),
+            samples: (ANSWERS * slowest).clamp(SHORTEST, LONGEST.max(LATENCIES * outer.latency())),
         })
     }
 }

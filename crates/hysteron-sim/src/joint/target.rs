@@ -1,7 +1,7 @@
 //! The loop around a model that an export writes.
 
 use super::tune;
-use hysteron::control::{Gains, Safety, Scheme};
+use hysteron::control::{Controller, Gains, Safety, Scheme};
 use hysteron::{Error, Model, Remedy, Result, Setting};
 
 /// What is chosen of a loop around a model: its inverse and a PID.
@@ -58,6 +58,8 @@ impl TargetLoop {
             safety: usual_safety(self.dt),
             ..Scheme::new(self.dt, self.drives.unwrap_or_else(of_model))
         };
+        // What cannot be is told as that, and not as gains that are missing.
+        Controller::new(scheme.clone())?;
         scheme.pid = Some(match self.gains {
             Some(gains) => gains,
             None => tune(model, &scheme, true).map_err(untuned)?.gains,

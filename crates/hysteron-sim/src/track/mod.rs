@@ -3,7 +3,7 @@
 //!
 //! For each seed a model is identified from an experiment of its own, and every controller runs
 //! over the same reference with the same disturbances. The gains of all PIDs come from one test on
-//! the same plant.
+//! the same plant, or, for each controller, from the model of the run.
 
 mod check;
 mod identify;
@@ -136,7 +136,7 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
                     plant.advance(time_s);
                 }
                 let tuned = match by_model && kind.has_pid() {
-                    true => Some(tune::by_model(scenario, &scheme, &model, *kind)?),
+                    true => Some(tune::by_model(&scheme, &model, *kind)?),
                     false => None,
                 };
                 let gains = tuned.map(|tuned| tuned.gains).or(gains);
@@ -194,7 +194,8 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
     })
 }
 
-/// What all controllers of a scenario share, and the gains of their PID, where one of them has any.
+/// What all controllers of a scenario share, and the gains of their PID, where one of them has any
+/// and a test of the plant gives them.
 ///
 /// # Errors
 /// As [`track`].

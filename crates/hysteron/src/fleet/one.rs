@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::hold_out::{HeldOut, fit_holding_out};
 use crate::identify::Fit;
 use crate::model::Model;
-use crate::prepare::{Doubt, doubts_at_sight, doubts_of_models, prepare, rate_dependence};
+use crate::prepare::{Doubt, doubts, prepare, rate_dependence};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use sha2::{Digest, Sha256};
@@ -48,12 +48,9 @@ pub(super) fn fit(
     progress: Progress<'_>,
 ) -> Result<FleetRow> {
     let (model, warnings) = guarded(|| {
-        let mut ready = Ready::new(recording, &notes, options, progress)?;
+        let ready = Ready::new(recording, &notes, options, progress)?;
         let fitted = match shared {
-            None => {
-                ready.doubt();
-                ready.fitted(&options.fit, options, progress)?
-            }
+            None => ready.fitted(&options.fit, options, progress)?,
             Some(shared) => ready.fitted_sharing(shared, options, progress)?,
         };
         ready.advised(fitted)
@@ -72,8 +69,6 @@ pub(super) fn guarded<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
 pub(super) struct Ready {
     recording: Recording,
     warnings: Vec<String>,
-    /// Whether models may find rows that disagree: nothing else does.
-    may_disagree: bool,
 }
 
 /// A model, and what was held out of its fit.
@@ -96,13 +91,10 @@ impl Ready {
                 quantity.unit.clone_from(unit);
             }
         }
-        let mut may_disagree = false;
         if let Some(steps) = options.steps() {
             recording = prepare(&recording, steps, progress)?.0;
         } else {
-            let doubts = doubts_at_sight(&recording)?;
-            may_disagree = doubts.is_empty();
-            warnings.extend(doubts.iter().map(Doubt::to_string));
+            warnings.extend(doubts(&recording)?.iter().map(Doubt::to_string));
         }
         if recording.time.is_some()
             && let Some(rate) = rate_dependence(&recording)?.filter(|rate| rate.is_material())
@@ -115,17 +107,7 @@ impl Ready {
         Ok(Self {
             recording,
             warnings,
-            may_disagree,
         })
-    }
-
-    /// Asks models for rows that disagree with the others. That costs more than a fit, so who is
-    /// predicted as well as the others of its kind is not asked: such rows raise the error.
-    pub(super) fn doubt(&mut self) {
-        if std::mem::take(&mut self.may_disagree) {
-            let doubts = doubts_of_models(&self.recording);
-            self.warnings.extend(doubts.iter().map(Doubt::to_string));
-        }
     }
 
     pub(super) fn recording(&self) -> &Recording {

@@ -98,16 +98,22 @@ fn asked(
         };
         palette.fill(tested)?;
         let before = palette.shared();
+        let kinds = |shared: &FleetShared| -> Vec<Chosen> {
+            let kinds = shared.kinds.iter();
+            kinds.map(|kind| kind.chosen.clone()).collect()
+        };
+        let known = before.as_ref().map(|(shared, _)| kinds(shared));
         let ratios = before.map(|(_, ratios)| ratios).unwrap_or_default();
         let is_served = |n: usize| ratios.get(begin + n).is_some_and(|r| Palette::serves(*r));
         let unserved: Vec<usize> = (0..chosen.len()).filter(|n| !is_served(*n)).collect();
-        let is_stable = begin > 0 && unserved.len() <= UNSERVED;
+        let few = unserved.len() <= UNSERVED;
         for n in unserved {
             palette.suggest(chosen[n].clone());
         }
         palette.fill(tested)?;
         shared = palette.shared().map(|(shared, _)| shared);
-        if is_stable {
+        // Those that are not served may have no choice that serves more than one of them.
+        if begin > 0 && (few || shared.as_ref().map(kinds) == known) {
             return Ok(shared);
         }
     }

@@ -53,7 +53,7 @@ impl Ready {
 
     /// The model with the choice that serves the actuator: that of one of the kinds, or its own.
     pub(super) fn fitted_sharing(
-        &mut self,
+        &self,
         shared: &FleetShared,
         options: &FleetOptions<'_>,
         progress: Progress<'_>,
@@ -90,10 +90,7 @@ impl Ready {
         progress.tell("fits", f64::NAN)?;
         let alone = match best.as_ref().is_some_and(usual) {
             true => None,
-            false => {
-                self.doubt();
-                Some(self.fitted(&options.fit.testing(), options, progress))
-            }
+            false => Some(self.fitted(&options.fit.testing(), options, progress)),
         };
         let (mut best, alone) = match (best, alone) {
             (Some(best), alone) => (best, alone.and_then(Result::ok)),

@@ -88,8 +88,8 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     // No part of the rows then errs by enough. The usual range of the others may be smaller; that
     // is so where the outputs of many rows are wrong, and then the series jump, or the errors are
     // large.
-    let most = mean_of_the_largest(apart(&recording.output, &all), HALF);
-    if jumps.is_empty() && most <= 0.5 * LEAST * span {
+    let error = mean(apart(&recording.output, &all));
+    if jumps.is_empty() && error <= 0.5 * HALF * LEAST * span {
         return None;
     }
     let compared_with = |suspect| compared(recording, suspect, FACTOR, &all, from_kept);
@@ -122,15 +122,6 @@ fn found(recording: &Recording) -> Option<Disagreement> {
         &unseen(recording, &|_| true)?,
         unseen,
     )
-}
-
-/// The mean of this share of the values, the largest ones: no other part of the same size has a
-/// larger one.
-fn mean_of_the_largest(values: impl Iterator<Item = f64>, share: f64) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_unstable_by(|a, b| b.total_cmp(a));
-    let count = (share * values.len() as f64).ceil().max(1.0);
-    mean(values.into_iter().take(count as usize))
 }
 
 /// What models of the samples that are kept predict.

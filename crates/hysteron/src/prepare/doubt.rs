@@ -217,46 +217,8 @@ pub fn doubts(recording: &Recording) -> Result<Vec<Doubt>> {
     Ok(without_spikes(&without_wrong(recording)))
 }
 
-/// The doubts that the readings alone raise, without a model: those of [`doubts`] that cost no fit.
-///
-/// # Errors
-/// As [`doubts`].
-pub(crate) fn doubts_at_sight(recording: &Recording) -> Result<Vec<Doubt>> {
-    recording.check()?;
-    Ok(at_sight(&without_wrong(recording)))
-}
-
-/// The other doubts: rows that raise the error of a model on the others.
-pub(crate) fn doubts_of_models(recording: &Recording) -> Vec<Doubt> {
-    disagreeing(&without_wrong(recording))
-}
-
 /// The doubts about a recording whose spikes are gone.
 fn without_spikes(recording: &Recording) -> Vec<Doubt> {
-    let found = at_sight(recording);
-    // Where rows are known to be wrong, all others would disagree with them.
-    match found.is_empty() {
-        true => disagreeing(recording),
-        false => found,
-    }
-}
-
-fn disagreeing(recording: &Recording) -> Vec<Doubt> {
-    let rows = |span: &Range<usize>| Rows::new(recording, span);
-    let percent = |error: f64| 100.0 * error / usual_span(&recording.output);
-    let names = [&recording.input_quantity, &recording.output_quantity];
-    let [x, y] = names.map(|quantity| &quantity.name);
-    let found = disagreement(recording).map(|found| Doubt::Disagree {
-        rows: found.suspect.rows.iter().map(rows).collect(),
-        others: found.suspect.rest(recording.len()).map(|rest| rows(&rest)),
-        with: percent(found.with),
-        without: percent(found.without),
-        read: found.suspect.way.map(|way| way.text(x, y)),
-    });
-    found.into_iter().collect()
-}
-
-fn at_sight(recording: &Recording) -> Vec<Doubt> {
     let (input, output) = (&recording.input, &recording.output);
     let (x, y) = (
         &recording.input_quantity.name,
@@ -280,6 +242,17 @@ fn at_sight(recording: &Recording) -> Vec<Doubt> {
         found.extend(gaps.map(|n| Doubt::Gap {
             series: x.clone(),
             rows: rows(&(n - 1..n + 1)),
+        }));
+    }
+    // Where rows are known to be wrong, all others would disagree with them.
+    if found.is_empty() {
+        let percent = |error: f64| 100.0 * error / usual_span(output);
+        found.extend(disagreement(recording).map(|found| Doubt::Disagree {
+            rows: found.suspect.rows.iter().map(rows).collect(),
+            others: found.suspect.rest(recording.len()).map(|rest| rows(&rest)),
+            with: percent(found.with),
+            without: percent(found.without),
+            read: found.suspect.way.map(|way| way.text(x, y)),
         }));
     }
     found

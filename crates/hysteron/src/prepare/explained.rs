@@ -21,7 +21,8 @@ const TURNS: f64 = 0.1;
 /// share of the usual range. The first number is for the way there, the second for the way back.
 const TIMES: [f64; 2] = [10.0, 4.0];
 const CLEARLY: [f64; 2] = [0.05, 0.02];
-/// A model that has seen the rows moves by at least this share of that.
+/// Whether a model of the others is asked is judged by one of all rows. It follows a frozen channel
+/// a part of the way, never half of it in what was tried (`measured/faults.md`).
 const SEEN: f64 = 0.5;
 /// There a channel stands still if it moves by at most this share of its usual range.
 const STILL: f64 = 0.02;
@@ -74,8 +75,8 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
     found.into_iter().flatten().any(|off| off <= enough)
 }
 
-/// Whether rows in which a channel stands still may be far from what a model of the others says, by
-/// what one says that has seen `all` rows. That one comes some way towards them.
+/// Whether rows in which a channel stands still may be far from what a model of the others says,
+/// judged by a model that is there already, of `all` rows: it saves a fit for each rest of a series.
 pub(super) fn may_stand_still(recording: &Recording, rows: &Range<usize>, all: &[f64]) -> bool {
     is_still_beside(
         recording,

@@ -34,7 +34,6 @@ mod test_series;
 mod tests;
 
 pub use doubt::{Doubt, doubts};
-pub(crate) use doubt::{doubts_at_sight, doubts_of_models};
 pub use judge::Judged;
 pub use options::{PrepareOptions, Step};
 pub use rate::{RateDependence, rate_dependence};

@@ -133,12 +133,11 @@ fn between(cuts: &[usize], len: usize) -> Vec<Vec<Range<usize>>> {
         let ends = cuts.iter().copied().chain([len]);
         let stretches: Vec<Range<usize>> = begins.zip(ends).map(|(a, b)| a..b).collect();
         for first in [0, 1] {
-            sets.push(stretches.iter().skip(first).step_by(2).cloned().collect());
+            let others: Vec<_> = stretches.iter().skip(first).step_by(2).cloned().collect();
+            // One alone comes below.
+            sets.extend(Some(others).filter(|others| others.len() > 1));
         }
-        // Of two stretches, every other one is one of them.
-        if stretches.len() > 2 {
-            sets.extend(stretches.into_iter().map(|stretch| vec![stretch]));
-        }
+        sets.extend(stretches.into_iter().map(|stretch| vec![stretch]));
     }
     sets
 }

@@ -27,17 +27,9 @@ pub(super) fn outer(scenario: &Scenario, scheme: &Scheme) -> Result<Option<Gains
 }
 
 /// Gains for this controller by simulation of the loop around the model.
-pub(super) fn by_model(
-    scenario: &Scenario,
-    scheme: &Scheme,
-    model: &Model,
-    kind: Kind,
-) -> Result<Tuned> {
-    let next = usize::from(scheme.inner.is_none());
-    let of_model = next + model.delay().at(Some(scenario.interval_s));
+pub(super) fn by_model(scheme: &Scheme, model: &Model, kind: Kind) -> Result<Tuned> {
     let scheme = Scheme {
         policy: kind.policy(),
-        delay: Some(scheme.delay.unwrap_or(of_model)),
         ..scheme.clone()
     };
     joint::tune(model, &scheme, kind.has_model()).map_err(|error| {
