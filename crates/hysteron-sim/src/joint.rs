@@ -17,8 +17,8 @@ const DRIVES: [f64; 2] = [0.25, 0.75];
 /// late: nine swings take some 18.
 const PATIENCE: usize = 20_000;
 const LATENCIES: usize = 40;
-/// Factors on the gain that are tried, from the largest down by halves. That of a slow body, which a
-/// relay hardly moves within a sample, has to shrink a thousandfold.
+/// Factors on the gain that are tried, from the largest down by halves. That of a slow body, which
+/// a relay hardly moves within a sample, has to shrink a thousandfold.
 const LARGEST: f64 = 16.0;
 const HALVINGS: i32 = 14;
 /// Factors on the integral time that are tried, as powers of two. A relay swings through the whole
@@ -53,7 +53,7 @@ pub struct Tuned {
 /// Through the proportional part, noise moves the drive by at most a twentieth of its range (a
 /// standard deviation).
 ///
-/// A model without [stages](hysteron::Stages) answers at once, and does not know how fast the plant
+/// A model without stages answers at once, and does not know how fast the plant
 /// is. Its feedback is an integral, made for a plant that is ten times as late. A plant with a
 /// resonance may still need less: tune it by a test.
 ///

@@ -14,8 +14,8 @@ pub const AGAINST_INPUT: f64 = 0.1;
 
 /// The share of the output's path, from 0 to 1, on which it moves against the input, for outputs of
 /// that `sign`. Movements of up to 1 % of the range are noise, on input and output, and on the
-/// output those up to the furthest reading of its white noise ([`crate::noise`]), which is not told where
-/// the input jumps.
+/// output those up to the furthest reading of its white noise ([`crate::noise`]), which is not told
+/// where the input jumps.
 ///
 /// Butterfly loops, changing loads and rate dependence make this share large. Hysteresis does not.
 ///
