@@ -21,7 +21,7 @@ const LATENCIES: usize = 10;
 /// shortest run when it has come to rest.
 const ANSWERED: f64 = 0.9;
 const RESTS: f64 = 0.01;
-/// Such runs within which it comes to rest.
+/// Such runs, longer for a plant that is late, within which it comes to rest.
 const PATIENCE: usize = 30;
 
 /// The loop around the model without a loop inside, which the [`Plant`] has.
@@ -150,12 +150,14 @@ impl Reach {
 /// The outputs until the model rests with this drive.
 fn rest(plant: &mut Plant<'_>, drive: f64) -> Result<Vec<f64>> {
     let mut course = Vec::new();
+    // A plant that is later than that has not begun to move.
+    let samples = SHORTEST.max(2 * plant.waiting.len());
     for _ in 0..PATIENCE {
-        for _ in 0..SHORTEST {
+        for _ in 0..samples {
             course.push(plant.step(drive)?);
         }
         let end = course[course.len() - 1];
-        let moved = (end - course[course.len() - SHORTEST]).abs();
+        let moved = (end - course[course.len() - samples]).abs();
         if moved <= RESTS * (end - course[0]).abs() {
             break;
         }
