@@ -39,7 +39,7 @@ impl Model {
     ///     a controller, those of the loop. By default the model's own.
     /// controller : bool
     ///     Also write a control loop around the model: its inverse and a PID. It needs `dt`.
-    /// gains : control.Pid, optional
+    /// gains : Pid, optional
     ///     The gains of the controller. By default from the model, by simulation.
     /// gate : float, optional
     ///     A gate against spikes in the controller's readings: what deviates by less than this is
