@@ -177,8 +177,7 @@ impl Safety {
     /// ```
     #[must_use]
     pub fn usual(dt: f64) -> (f64, f64) {
-        let usual = hysteron_sim::joint::usual_safety(dt);
-        (usual.lost_s.unwrap_or(dt), usual.stuck_s.unwrap_or(dt))
+        hysteron_sim::joint::usual_safety(dt)
     }
 }
 

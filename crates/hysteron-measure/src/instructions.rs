@@ -8,8 +8,8 @@
 use crate::result::Result;
 use hysteron::{
     AdaptOptions, Around, Fit, FitOptions, Learner, Memory, Model, Operator, Plane, Recording,
+    Sign, Simulate, TableReader, TableWriter, Target, simulate_table,
 };
-use hysteron::{Sign, Simulate, TableReader, TableWriter, Target, simulate_table};
 use rand::{RngExt, SeedableRng};
 use std::fmt::Write as _;
 use std::hint::black_box;

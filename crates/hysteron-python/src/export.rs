@@ -35,8 +35,8 @@ impl Model {
     ///     The sample time in seconds, above 0. Needed by a model that depends on time and by a
     ///     controller, and only by these.
     /// drive_range : tuple of float, optional
-    ///     The lowest and the highest drive that the inverse may give, for a model with stages; with
-    ///     a controller, those of the loop. By default the model's own.
+    ///     The lowest and the highest drive that the inverse may give, for a model with stages;
+    ///     with a controller, those of the loop. By default the model's own.
     /// controller : bool
     ///     Also write a control loop around the model: its inverse and a PID. It needs `dt`.
     /// gains : Pid, optional

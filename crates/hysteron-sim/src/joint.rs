@@ -53,9 +53,9 @@ pub struct Tuned {
 /// Through the proportional part, noise moves the drive by at most a twentieth of its range (a
 /// standard deviation).
 ///
-/// A model without stages answers at once, and does not know how fast the plant
-/// is. Its feedback is an integral, made for a plant that is ten times as late. A plant with a
-/// resonance may still need less: tune it by a test.
+/// A model without stages answers at once, and does not know how fast the plant is. Its feedback is
+/// an integral, made for a plant that is ten times as late. A plant with a resonance may still need
+/// less: tune it by a test.
 ///
 /// An inner loop is taken as [SIMC](Gains::from_step) makes it: a lag as long as its dead time.
 ///

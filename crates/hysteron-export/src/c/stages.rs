@@ -21,9 +21,9 @@ pub struct CSampling {
 }
 
 impl CSampling {
-    /// For a loop around `model`, with its sample time if the model depends on time. The inverse keeps
-    /// to the drives that were fitted, as in a run: at the loop's own limit it would leave the
-    /// integral no room.
+    /// For a loop around `model`, with its sample time if the model depends on time. The inverse
+    /// keeps to the drives that were fitted, as in a run: at the loop's own limit it would leave
+    /// the integral no room.
     ///
     /// ```
     /// use hysteron::{Model, Operator, Plane, Sign};

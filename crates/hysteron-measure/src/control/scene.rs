@@ -151,9 +151,8 @@ fn with_the_other_test(scenario: &Scenario) -> Scenario {
     let mut scenario = scenario.clone();
     scenario.shared.tuning = match scenario.shared.tuning {
         Tuning::Relay => Tuning::Step,
-        Tuning::Step => Tuning::Relay,
-        // Both are beside it.
-        Tuning::Model => Tuning::Relay,
+        // Of gains from the model, both are another one.
+        Tuning::Step | Tuning::Model => Tuning::Relay,
     };
     scenario
 }

@@ -7,7 +7,8 @@ use hysteron::{Model, Result};
 
 /// What is added to the drive in every second quarter of a run, as a share of its range.
 const DISTURBANCE: f64 = 0.05;
-/// How much noise may move the drive through the proportional part: a standard deviation, as a share of its range.
+/// How much noise may move the drive through the proportional part: a standard deviation, as a
+/// share of its range.
 const LOUDEST: f64 = 0.05;
 /// The first part of a run, which does not count.
 const SETTLES: f64 = 0.125;

@@ -4,8 +4,8 @@ use hysteron::control::Scheme;
 use hysteron::{Model, Result, Sample, State};
 use std::collections::VecDeque;
 
-/// Dead times in the integral time of a loop that SIMC makes around an integrator. Its time constant
-/// is the dead time.
+/// Dead times in the integral time of a loop that SIMC makes around an integrator. Its time
+/// constant is the dead time.
 const OF_SIMC: f64 = 8.0;
 /// How many times later the plant is taken to be where nothing says how fast it is. A sampled loop
 /// should have 4 to 10 samples in its rise (Åström & Wittenmark 1997): slower things are unknown.

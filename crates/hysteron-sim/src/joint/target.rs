@@ -9,8 +9,8 @@ use hysteron::{Error, Model, Remedy, Result, Setting};
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};
 /// use hysteron_sim::joint::TargetLoop;
-/// let plane = Plane::new(1.0, 10.0, 8)?;
-/// let model = Model::new(Operator::Mkp, plane, vec![0.1; 36], 0.0, Sign::Positive)?;
+/// let plane = Plane::new(1.0, 10.0, 10)?; // from 0 to 10
+/// let model = Model::new(Operator::Mkp, plane, vec![0.1; 55], 0.0, Sign::Positive)?;
 /// let scheme = TargetLoop::new(0.05).scheme(&model)?;
 /// assert_eq!(scheme.drives, (0.0, 10.0));
 /// assert!(scheme.pid.is_some()); // from the model
@@ -46,16 +46,21 @@ impl TargetLoop {
     /// The loop around `model`. It is given up as a run is by default ([`usual_safety`]).
     ///
     /// # Errors
-    /// [`Error::Export`] where no gains come from the model.
+    /// [`Error::Control`] for settings that cannot be; [`Error::Export`] where no gains come from
+    /// the model.
     pub fn scheme(&self, model: &Model) -> Result<Scheme> {
         let plane = model.plane();
+        let (lost_s, stuck_s) = usual_safety(self.dt);
         let of_model = || model.drive.unwrap_or((plane.bottom(), plane.max()));
         let mut scheme = Scheme {
             tolerance: model.usual_tolerance(),
             delay: Some(1 + model.delay().at(Some(self.dt))),
             gate: self.gate,
             filter_s: self.filter_s.unwrap_or(0.0),
-            safety: usual_safety(self.dt),
+            safety: Safety {
+                lost_s: Some(lost_s),
+                stuck_s: Some(stuck_s),
+            },
             ..Scheme::new(self.dt, self.drives.unwrap_or_else(of_model))
         };
         // What cannot be is told as that, and not as gains that are missing.
@@ -68,19 +73,17 @@ impl TargetLoop {
     }
 }
 
-/// When a loop with this sample time, s, is given up, where nothing else is said.
+/// When a loop with this sample time, s, is given up where nothing else is said: the times
+/// [`Safety::lost_s`] and [`Safety::stuck_s`], s.
 ///
 /// ```
-/// let safety = hysteron_sim::joint::usual_safety(1.0);
-/// assert_eq!(safety.lost_s, Some(5.0)); // a few samples at least
+/// let (lost_s, _) = hysteron_sim::joint::usual_safety(1.0);
+/// assert_eq!(lost_s, 5.0); // a few samples at least
 /// ```
 #[must_use]
-pub fn usual_safety(dt: f64) -> Safety {
+pub fn usual_safety(dt: f64) -> (f64, f64) {
     let few = 5.0 * dt;
-    Safety {
-        lost_s: Some(f64::max(0.5, few)),
-        stuck_s: Some(f64::max(1.0, few)),
-    }
+    (f64::max(0.5, few), f64::max(1.0, few))
 }
 
 fn untuned(error: Error) -> Error {

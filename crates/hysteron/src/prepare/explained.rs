@@ -21,8 +21,8 @@ const TURNS: f64 = 0.1;
 /// share of the usual range. The first number is for the way there, the second for the way back.
 const TIMES: [f64; 2] = [10.0, 4.0];
 const CLEARLY: [f64; 2] = [0.05, 0.02];
-/// Whether a model of the others is asked is judged by one of all rows. It follows a frozen channel
-/// a part of the way, never half of it in what was tried (`measured/faults.md`).
+/// A model of all rows follows a frozen channel a part of the way, so it needs to move by this share
+/// of that alone. None of the faults that are tried (`measured/faults.md`) is passed over by it.
 const SEEN: f64 = 0.5;
 /// There a channel stands still if it moves by at most this share of its usual range.
 const STILL: f64 = 0.02;
@@ -76,7 +76,7 @@ pub(super) fn explained(recording: &Recording, rows: &Range<usize>, without: f64
 }
 
 /// Whether rows in which a channel stands still may be far from what a model of the others says,
-/// judged by a model that is there already, of `all` rows: it saves a fit for each rest of a series.
+/// judged by the model of `all` rows, which is there already: it saves a fit for each rest.
 pub(super) fn may_stand_still(recording: &Recording, rows: &Range<usize>, all: &[f64]) -> bool {
     is_still_beside(
         recording,
@@ -120,8 +120,8 @@ fn is_frozen(
     is_still_beside(recording, model, rows, [far(MOVES, 0), far(TURNS, 1)])
 }
 
-/// Whether one channel stands still in these rows while the other one, or the output of the `model`,
-/// goes one way and back by these shares of the usual range of the output.
+/// Whether one channel stands still in these rows while the other one, or the output of the
+/// `model`, goes one way and back by these shares of the usual range of the output.
 fn is_still_beside(
     recording: &Recording,
     model: Option<&[f64]>,

@@ -75,7 +75,8 @@ fn lost(work: &Recording, input: bool, deviations: f64, runs: bool) -> Vec<usize
     }
 }
 
-/// Replaces what was lost of one series; what is left to the data, only if it helps. Whether it did.
+/// Replaces what was lost of one series; what is left to the data, only if it helps. Returns
+/// whether it did.
 fn replace(
     work: &mut Recording,
     input: bool,
