@@ -43,6 +43,14 @@ def test_what_else_there_is(comparison, tmp_path):
     assert inner is None and repr(pid) == repr(comparison.pid)
 
 
+def test_each_controller_has_the_gains_of_its_model(comparison):
+    assert comparison.tuned == {}
+    by_model = pyhysteron.track(SCENARIO.replace("loop = {", "loop = { tuning = 'model',"), seeds=1)
+    assert list(by_model.tuned) == ["pid", "inverse-pid", "adaptive-pid"] and by_model.pid is None
+    pid, margin = by_model.tuned["inverse-pid"]
+    assert pid.gain > 0 and pid.integral_s > 0 and margin >= 2
+
+
 def test_a_file_is_its_text(comparison, tmp_path):
     (tmp_path / "sine.toml").write_text(SCENARIO)
     for path in [tmp_path / "sine.toml", str(tmp_path / "sine.toml")]:

@@ -136,6 +136,20 @@ impl Comparison {
         self.inner.gains.map(Pid::from_gains)
     }
 
+    /// Where each has gains from its model (`tuning = "model"`), for the first seed, by the name of
+    /// the controller: its PID, and the factor that the gains may grow by before the simulated loop
+    /// is restless.
+    #[getter]
+    fn tuned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let tuned = PyDict::new(py);
+        for (kind, seeds) in self.inner.controllers.iter().zip(&self.inner.tuned) {
+            if let Some(Some(found)) = seeds.first() {
+                tuned.set_item(kind.name(), (Pid::from_gains(found.gains), found.margin))?;
+            }
+        }
+        Ok(tuned)
+    }
+
     /// A PID with the gains of the loop around the temperature; None where there is none.
     #[getter]
     fn inner_pid(&self) -> Option<Pid> {
