@@ -2,7 +2,7 @@
 
 use crate::common::programs::{has, links, skip};
 use crate::common::reference::Number;
-use crate::common::staged::{Case, case};
+use crate::common::staged::{Case, bare, case};
 use crate::common::{Exported, answers, same, walks};
 use hysteron::control::{Compensator, Controller, Gains, Reading, Reference, Safety, Scheme};
 use hysteron::{Direction, Model, Policy, Sample};
@@ -52,12 +52,13 @@ fn loops(seed: u64, parts: Parts) -> Vec<Loop> {
     let sizes = [2, 3, 5, 8, 20];
     for levels in sizes {
         for operator in walks::OPERATORS {
-            for every in [false, true] {
+            for staged in [false, true] {
                 let found = std::iter::repeat_with(|| {
-                    let mut case = case(&mut rng, operator, levels, false);
-                    if every {
-                        case.sampling.drive = None;
-                    }
+                    let mut case = match staged {
+                        true => case(&mut rng, operator, levels, false),
+                        false => bare(&mut rng, operator, levels),
+                    };
+                    case.sampling.drive = None;
                     case
                 });
                 let last = loops.len() + 1 == 2 * sizes.len() * walks::OPERATORS.len();
@@ -65,8 +66,7 @@ fn loops(seed: u64, parts: Parts) -> Vec<Loop> {
                     !(last && rings(&case.model))
                         && case.model.load.is_none()
                         && case.model.inverse().is_ok()
-                        && case.sampling.drive.is_none()
-                        && case.model.is_plain() != every
+                        && case.model.is_plain() != staged
                         && case.is_kept(CReal::Float)
                 };
                 let case = found.filter(fits).take(1).next().unwrap();

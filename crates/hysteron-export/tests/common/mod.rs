@@ -165,20 +165,46 @@ impl Exported {
             .folder
             .path()
             .join(format!("{main}.{cc}{}", flags.concat()));
+        let is_algorithm = |file: &&PathBuf| {
+            let name = file.file_name().unwrap().to_string_lossy();
+            name.starts_with("hysteron_mcu")
+        };
+        let (algorithm, models): (Vec<&PathBuf>, _) = self.sources.iter().partition(is_algorithm);
+        run(self
+            .compiler(cc, flags)
+            .arg(here("tests/mcu").join(main))
+            .args(algorithm)
+            .args(self.compiled(cc, flags, models))
+            .arg("-o")
+            .arg(&program));
+        program
+    }
+
+    /// The files of the models hold constants alone, which are the same whatever is optimised: they
+    /// are compiled once for each compiler and width of a pointer. A sanitizer watches their edges.
+    fn compiled(&self, cc: &str, flags: &[&str], models: Vec<&PathBuf>) -> Vec<PathBuf> {
+        if flags.iter().any(|flag| flag.starts_with("-fsanitize")) {
+            return models.into_iter().cloned().collect();
+        }
+        let narrow: Vec<&str> = flags.iter().copied().filter(|flag| *flag == "-m32").collect();
+        let folder = self.folder.path().join(format!("{cc}{}", narrow.concat()));
+        if !folder.exists() {
+            std::fs::create_dir(&folder).unwrap();
+            let mut compiler = self.compiler(cc, &narrow);
+            run(compiler.arg("-c").args(&models).current_dir(&folder));
+        }
+        let object = |file: &PathBuf| folder.join(file.with_extension("o").file_name().unwrap());
+        models.into_iter().map(object).collect()
+    }
+
+    fn compiler(&self, cc: &str, flags: &[&str]) -> Command {
         let mut command = Command::new(cc);
         command.args(STRICT).args(flags);
         if self.real == CReal::Float {
             command.arg("-Wdouble-promotion");
         }
+        command.arg("-I").arg(self.folder.path());
         command
-            .arg("-I")
-            .arg(self.folder.path())
-            .arg(here("tests/mcu").join(main))
-            .args(&self.sources)
-            .arg("-o")
-            .arg(&program);
-        run(&mut command);
-        program
     }
 
     /// Makes the algorithm end the program where a loop has more iterations than the header says.

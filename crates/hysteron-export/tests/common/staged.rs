@@ -90,6 +90,33 @@ fn at_middle(file: &mut Value, parts: &[Value]) {
     file["output"]["offset"] = sum(&|part| part["offset"].as_f64().unwrap()).into();
 }
 
+/// A start as fits find it.
+fn start(rng: &mut StdRng, plain: &Model) -> Value {
+    let (low, high) = (plain.plane().bottom(), plain.plane().max());
+    let mut state = plain.start();
+    let inputs: Vec<f64> = (0..9).map(|_| rng.random_range(low..high)).collect();
+    plain.run(&mut state, &inputs, &mut [0.0; 9]).unwrap();
+    let points: Vec<f64> = state.turning_points().collect();
+    json!({"turning_points": points, "input": state.input()})
+}
+
+/// A model without stages, with a start or without.
+pub fn bare(rng: &mut StdRng, operator: Operator, levels: usize) -> Case {
+    let mut model = walks::model(rng, operator, levels);
+    if rng.random_bool(0.6) {
+        let mut file: Value = serde_json::from_str(&model.to_json()).unwrap();
+        file["version"] = 2.into();
+        file["start"] = start(rng, &model);
+        model = Model::from_json(&file.to_string()).unwrap();
+    }
+    let (low, high) = (model.plane().bottom(), model.plane().max());
+    let beyond = 0.3 * (high - low);
+    Case {
+        drives: (low - beyond, high + beyond),
+        ..Case::of(model, CSampling::default())
+    }
+}
+
 /// A model whose file says its stages; each is there as a coin falls, or all with `every`.
 pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) -> Case {
     let plain = walks::model(rng, operator, levels);
@@ -172,11 +199,7 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
         file["stages"]["ring_damping"] = json!([damping]);
     }
     if coin(rng) {
-        let mut state = plain.start();
-        let inputs: Vec<f64> = (0..9).map(|_| rng.random_range(low..high)).collect();
-        plain.run(&mut state, &inputs, &mut [0.0; 9]).unwrap();
-        let points: Vec<f64> = state.turning_points().collect();
-        file["start"] = json!({"turning_points": points, "input": state.input()});
+        file["start"] = start(rng, &plain);
     }
     let model = Model::from_json(&file.to_string()).unwrap_or_else(|_| {
         // Weights below zero bind no heat.
