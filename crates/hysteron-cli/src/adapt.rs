@@ -129,9 +129,15 @@ fn worse(adapted: &Adapted) -> String {
         ),
         _ => "no reading of the last third can be compared".into(),
     };
+    let whole = adapted.whole.fixed;
+    let all = format!(
+        "over all rows it errs by {} as it is in the end, the model left alone by {}",
+        error(adapted.again),
+        error(whole)
+    );
     format!(
-        "it ended no better: {found}: see the column `outcome` of --table, try another --method, or \
-         keep the model as it is"
+        "it ended no better: {found}; {all}: see the column `outcome` of --table, try another \
+         --method, or keep the model as it is"
     )
 }
 

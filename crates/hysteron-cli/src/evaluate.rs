@@ -8,7 +8,6 @@ use hysteron::{Errors, Evaluation, InverseRun, Quantity, Recording, Verdict};
 use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
-use std::borrow::Cow;
 use std::path::Path;
 
 pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
@@ -36,18 +35,13 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     };
     let verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
     if let Some(mut folder) = folder {
-        let behind = recordings
-            .iter()
-            .map(|recording| model.behind_body(recording));
-        let behind = behind.map(|recording| recording.map(Cow::into_owned));
-        let behind: Vec<Recording> = behind.collect::<hysteron::Result<_>>()?;
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let typed = Typed::now()?;
         let report = Report {
             title: &title,
             shown: Shown::Evaluation {
                 model: &model,
-                recordings: &behind,
+                recordings: &recordings,
                 evaluation: &evaluation,
             },
             made: typed.made(),

@@ -1,7 +1,7 @@
 //! Errors of the library, with its options as they are on the command line.
 
 use crate::terminal::say;
-use hysteron::{Advice, Doubt, Remedy, Setting, SettingValue};
+use hysteron::{Advice, Doubt, Remedy, Setting};
 use std::error::Error;
 
 /// What is wrong, where, and what to do.
@@ -33,13 +33,5 @@ pub(crate) fn say_doubts(doubts: &[Doubt], which: &str) {
 }
 
 fn spelt(remedy: &Remedy) -> String {
-    remedy.spelt(option)
-}
-
-/// An option as it is typed.
-pub(crate) fn option(Setting { name, value }: &Setting) -> String {
-    match value {
-        SettingValue::Any | SettingValue::On => format!("--{name}"),
-        value => format!("--{name} {value}"),
-    }
+    remedy.spelt(Setting::typed)
 }

@@ -15,7 +15,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
             format!("{model}: the model has no 95 % band: fit it again with --bootstrap 200")
         })?),
     };
-    let what = ["inputs above the plane", "inputs below its active range"];
+    let what = ["inputs above the plane", "inputs below the active range"];
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
@@ -65,7 +65,10 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         preview: args.preview,
     };
     let state = args.start.state(&model);
-    let what = ["targets above the model's range", "targets below it"];
+    let what = [
+        "targets above the model's range",
+        "targets below the model's range",
+    ];
     through(
         [&args.data, &args.model],
         args.out.as_deref(),

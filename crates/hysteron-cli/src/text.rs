@@ -1,8 +1,7 @@
 //! Numbers and tables as text.
 
-use crate::remedy;
 use hysteron::{
-    Confidence, ConstantSummary, Errors, Excitation, FitSummary, Model, Quantity, Verdict,
+    Confidence, ConstantSummary, Errors, Excitation, FitSummary, Model, Quantity, Setting, Verdict,
 };
 
 /// A number with four significant digits.
@@ -14,7 +13,7 @@ pub(crate) fn number(value: f64) -> String {
 pub(crate) fn verdict(verdict: &Verdict) -> String {
     let mut last = "";
     let lines = verdict
-        .lines(remedy::option)
+        .lines(Setting::typed)
         .into_iter()
         .map(|(heading, text)| {
             let shown = if heading == last { "" } else { heading };

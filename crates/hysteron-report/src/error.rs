@@ -80,6 +80,9 @@ pub enum ReportError {
         /// The figures that there can be.
         stems: Vec<&'static str>,
     },
+    /// A recording that the model cannot be run over.
+    #[error(transparent)]
+    Run(#[from] hysteron::Error),
     /// A file or the directory could not be written.
     #[error(transparent)]
     Write(#[from] hysteron_files::Error),

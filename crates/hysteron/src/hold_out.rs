@@ -131,11 +131,7 @@ pub fn fit_holding_out(
     let recordings = recordings.as_ref();
     let others = what.recordings();
     others.iter().try_for_each(|other| other.check())?;
-    let again = |other: &&Recording| {
-        let same =
-            |fitted: &Recording| fitted.input == other.input && fitted.output == other.output;
-        recordings.iter().any(same)
-    };
+    let again = |other: &&Recording| recordings.iter().any(|one| one.has_samples_of(other));
     if others.iter().any(again) {
         let words = "take another recording for {}, or a part of this one";
         let part = Setting::any("hold-out");

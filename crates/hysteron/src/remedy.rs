@@ -10,8 +10,7 @@ use std::fmt;
 /// use hysteron::{Remedy, Setting};
 /// let remedy = Remedy::new("take {} at most", [Setting::number("load-degree", 2)]);
 /// assert_eq!(remedy.to_string(), "take `load degree` 2 at most");
-/// let spelt = |setting: &Setting| format!("--{} {}", setting.name, setting.value);
-/// assert_eq!(remedy.spelt(spelt), "take --load-degree 2 at most");
+/// assert_eq!(remedy.spelt(Setting::typed), "take --load-degree 2 at most");
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remedy {
@@ -110,6 +109,16 @@ impl Setting {
     pub const fn number(name: &'static str, number: usize) -> Self {
         let value = SettingValue::Number(number);
         Self { name, value }
+    }
+
+    /// The option as it is typed on a command line.
+    #[must_use]
+    pub fn typed(&self) -> String {
+        let Self { name, value } = self;
+        match value {
+            SettingValue::Any | SettingValue::On => format!("--{name}"),
+            value => format!("--{name} {value}"),
+        }
     }
 }
 

@@ -64,6 +64,8 @@ fn fault(name: &str) -> Option<&'static str> {
         Some("it has more than 31 letters")
     } else if lower.starts_with("hys_") || lower.starts_with("hysteron_mcu") {
         Some("hys_ and hysteron_mcu are names of the algorithm")
+    } else if HEADERS.iter().any(|end| name.ends_with(end)) {
+        Some("names that end with _t, _MAX or _MIN are those of C's headers")
     } else if is_taken(name) || is_of_headers(name) {
         Some("it is a word of C or C++ or a name of its library")
     } else if crate::device::is_device(name) {
@@ -85,12 +87,16 @@ fn is_taken(name: &str) -> bool {
 /// of them (7.26.8).
 fn is_of_headers(name: &str) -> bool {
     let begins = |starts: &[&str]| starts.iter().any(|start| name.starts_with(start));
-    let ends = |ends: &[&str]| ends.iter().any(|end| name.ends_with(end));
     ["NULL", "DECIMAL_DIG"].contains(&name)
-        || ends(&["_t", "_MAX", "_MIN"])
         || begins(&["FLT_", "DBL_", "LDBL_"])
-        || begins(&["INT", "UINT"]) && ends(&["_C"])
+        || begins(&["INT", "UINT"]) && name.ends_with("_C")
 }
+
+/// What the types and limits of headers end with.
+const HEADERS: [&str; 3] = ["_t", "_MAX", "_MIN"];
+
+/// What makes a name of one that C has.
+const OWN: &str = "model";
 
 /// A name made of a file's: what is no letter becomes `_`.
 fn after(stem: &str) -> String {
@@ -100,14 +106,18 @@ fn after(stem: &str) -> String {
     });
     let mut name: String = letters.collect();
     if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        name.insert_str(0, "model_");
+        name = format!("{OWN}_{name}");
     }
     name.truncate(LONGEST);
-    if fault(&name).is_some() {
-        name.truncate(LONGEST - "model_".len());
-        name.insert_str(0, "model_");
+    let short = &name[..name.len().min(LONGEST - OWN.len() - 1)];
+    let names = [format!("{OWN}_{short}"), format!("{short}_{OWN}")];
+    match fault(&name) {
+        None => name,
+        Some(_) => names
+            .into_iter()
+            .find(|name| fault(name).is_none())
+            .unwrap_or(name),
     }
-    name
 }
 
 #[cfg(test)]
@@ -131,6 +141,8 @@ mod tests {
             ("..", "model_"),
             ("aux.json", "model_aux"),
             ("NULL.json", "model_NULL"),
+            ("wire-t.json", "wire_t_model"),
+            ("range_MAX.json", "range_MAX_model"),
         ];
         for (file, name) in cases {
             assert_eq!(choose(None, Path::new(file)).unwrap(), name, "{file}");

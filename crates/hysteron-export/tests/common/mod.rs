@@ -186,7 +186,11 @@ impl Exported {
         if flags.iter().any(|flag| flag.starts_with("-fsanitize")) {
             return models.into_iter().cloned().collect();
         }
-        let narrow: Vec<&str> = flags.iter().copied().filter(|flag| *flag == "-m32").collect();
+        let narrow: Vec<&str> = flags
+            .iter()
+            .copied()
+            .filter(|flag| *flag == "-m32")
+            .collect();
         let folder = self.folder.path().join(format!("{cc}{}", narrow.concat()));
         if !folder.exists() {
             std::fs::create_dir(&folder).unwrap();

@@ -10,7 +10,7 @@ use crate::evaluation::view::View;
 use crate::made;
 use crate::number::{count, percent, significant};
 use crate::subject::{Section, Simulated, Subject};
-use hysteron::{Confidence, Errors};
+use hysteron::{Confidence, Errors, Setting};
 use maud::{Markup, html};
 
 impl Subject for View<'_> {
@@ -88,7 +88,7 @@ impl Subject for View<'_> {
 /// Whether the model is good enough, and if not, why.
 fn verdict(view: &View<'_>) -> Markup {
     let lines = view.verdict.iter();
-    let lines = lines.flat_map(|verdict| verdict.lines(|setting| format!("--{}", setting.name)));
+    let lines = lines.flat_map(|verdict| verdict.lines(Setting::typed));
     html! {
         div.wide { table.facts.verdict { @for (heading, text) in lines {
             tr { th scope="row" { (heading) } td { (text) } }

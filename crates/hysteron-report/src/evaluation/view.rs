@@ -8,9 +8,40 @@ use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Valida
 use hysteron::{Model, Origin, Recording, Verdict, one_after_the_other};
 use std::borrow::Cow;
 
+/// All recordings, one after the other, behind the thermal body of the model.
+fn behind_body<'a>(
+    model: &Model,
+    recordings: &'a [Recording],
+) -> Result<Cow<'a, Recording>, ReportError> {
+    if model.thermal.is_none() {
+        return one_after_the_other(recordings).ok_or(ReportError::NoRecording);
+    }
+    let behind = recordings.iter();
+    let behind = behind.map(|recording| Ok(model.behind_body(recording)?.into_owned()));
+    let behind: Vec<Recording> = behind.collect::<Result<_, ReportError>>()?;
+    let all = one_after_the_other(&behind).ok_or(ReportError::NoRecording)?;
+    Ok(Cow::Owned(all.into_owned()))
+}
+
+/// What figures show as the input: the temperature of the body, where there is one. Without a
+/// thermometer it is in units of the drive that holds it.
+fn behind_body_is(model: &Model, input: &Labelled) -> Labelled {
+    match model.thermal {
+        None => input.clone(),
+        Some(body) if body.gain == 1.0 && body.ambient == 0.0 => {
+            input.renamed("temperature of the body")
+        }
+        Some(_) => Labelled {
+            name: "temperature of the body".into(),
+            unit: None,
+        },
+    }
+}
+
 /// An evaluation, ready to be drawn.
 pub(crate) struct View<'a> {
-    /// All recordings, one after the other.
+    /// All recordings, one after the other, with the input that the operators see: behind the
+    /// thermal body, if there is one.
     pub(crate) recording: Cow<'a, Recording>,
     /// The first samples of all recordings but the first one.
     pub(crate) begins: Vec<usize>,
@@ -32,7 +63,7 @@ impl<'a> View<'a> {
         recordings: &'a [Recording],
         evaluation: &'a Evaluation,
     ) -> Result<Self, ReportError> {
-        let recording = one_after_the_other(recordings).ok_or(ReportError::NoRecording)?;
+        let recording = behind_body(model, recordings)?;
         let ends = recordings.iter().scan(0, |end, recording| {
             *end += recording.len();
             Some(*end)
@@ -64,10 +95,11 @@ impl<'a> View<'a> {
         }
         let verdict = Verdict::of_evaluation(model, recordings, evaluation).ok();
         let source = Source::new(model);
+        let input = Labelled::first([&recording.input_quantity, source.input()], "input");
         let (time, time_label) = clock(&recording);
         let time = time.into_owned().into();
         Ok(Self {
-            input: Labelled::first([&recording.input_quantity, source.input()], "input"),
+            input: behind_body_is(model, &input),
             output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             recording,
             begins,

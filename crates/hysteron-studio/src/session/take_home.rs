@@ -10,11 +10,10 @@ use super::thinned::rows;
 use super::view::View;
 use super::wish::Wish;
 use base64::Engine;
-use hysteron::{Recording, TableWriter, evaluate};
+use hysteron::{TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
 use hysteron_report::{Made, Report, Shown};
 use serde::{Deserialize, Serialize, Serializer};
-use std::borrow::Cow;
 use std::io::{Cursor, Write};
 use std::path::Path;
 
@@ -228,16 +227,11 @@ impl Session {
         let recordings = opened.parts()?.all();
         let evaluation = evaluate(model, recordings)?;
         let title = format!("fit {fit} on {}", opened.name);
-        let behind = recordings
-            .iter()
-            .map(|recording| model.behind_body(recording));
-        let behind = behind.map(|recording| recording.map(Cow::into_owned));
-        let seen: Vec<Recording> = behind.collect::<hysteron::Result<_>>()?;
         let report = Report {
             title: &title,
             shown: Shown::Evaluation {
                 model,
-                recordings: &seen,
+                recordings,
                 evaluation: &evaluation,
             },
             made: Made::default(),

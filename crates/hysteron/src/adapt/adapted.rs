@@ -37,13 +37,15 @@ pub struct Adapted {
     /// samples.
     pub thirds: Vec<Compared>,
     /// Errors over the last third of the samples that are not [stuck](Adapted::stuck), without the
-    /// rejected readings and those on probation; [`Adapted::worse`] is based on them. `None` if there
+    /// rejected readings and those on probation; [`Adapted::worse`] begins with them. `None` if there
     /// are no such samples.
     pub late: Option<Compared>,
     /// Whether the model that learned is no better than the model left alone: on the last third
     /// its errors, taken before it learned from each sample, are larger than those of the fixed
     /// model, or as large although it changed. Differences of the size of rounding do not count. Or
-    /// the final weights have clearly larger errors there ([`Adapted::again_late`]).
+    /// the final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err more
+    /// over all samples ([`Adapted::again`]), and learning gained less than a tenth on the last third
+    /// of all readings.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.

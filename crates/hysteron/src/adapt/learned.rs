@@ -15,6 +15,9 @@ use std::ops::Range;
 /// Differences below this share are rounding, because two ways to sum have different orders.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// Learning that leaves more than this share of the error gains little.
+const GAINS: f64 = 0.9;
+
 /// [`Adapted::worse`].
 fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
     match late.map(|late| late.loss(range)) {
@@ -22,6 +25,14 @@ fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
         // Nothing says that it is better.
         None => changed,
     }
+}
+
+/// Whether the last model errs more over all samples than the one left alone, and learning gained
+/// little while it lasted, with the readings that it rejected: a hum does this. Where a plant has
+/// changed, learning gains much.
+fn spoilt(again: &Errors, whole: &Compared, thirds: &[Compared]) -> bool {
+    let gains = |last: &Compared| last.adapting.rmse < GAINS * last.fixed.rmse;
+    again.rmse > whole.fixed.rmse && thirds.last().is_some_and(|last| !gains(last))
 }
 
 /// Whether the axis of the `offline` model has moved.
@@ -97,7 +108,7 @@ impl Learned {
         let compare = |which: &dyn Fn(usize) -> bool| beside_fixed(&output_model, which);
         let whole = compare(&|_| true).ok_or_else(no_samples)?;
         let third = |k: usize| k * count / 3..(k + 1) * count / 3;
-        let thirds = (0..3)
+        let thirds: Vec<Compared> = (0..3)
             .map(|k| compare(&|n| third(k).contains(&n)))
             .collect::<Option<_>>()
             .unwrap_or_default();
@@ -126,7 +137,8 @@ impl Learned {
         Ok(Adapted {
             worse: is_worse(late.as_ref(), changed, offline.output_range())
                 || late.is_some_and(|late| late.says_nothing(late_spread))
-                || stays && again_late.is_some_and(|again| again.is_harm()),
+                || stays && again_late.is_some_and(|again| again.is_harm())
+                || stays && spoilt(&again, &whole, &thirds),
             drift,
             stuck,
             model: last,

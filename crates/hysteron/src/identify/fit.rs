@@ -1,6 +1,6 @@
 //! [`Fit`], the entry point of identification: options, choices left to the data, progress.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::identify::choose::start::{at_rest, usual_start};
 use crate::identify::choose::{Open, is_worth};
 use crate::identify::delay;
@@ -14,6 +14,7 @@ use crate::identify::weights::problem::{check_gram, check_options};
 use crate::model::{Delay, Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
 use hysteron_core::{Operator, Plane};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -362,6 +363,7 @@ impl<'a> Fit<'a> {
     /// - [`crate::Error::Fit`] for options that contradict each other, and for creep, a lag or a
     ///   ring without time, and a delay without samples at equal distances.
     /// - [`crate::Error::Thermal`] for a thermal body without time.
+    /// - [`crate::Error::Fit`] for a repeat that is among the recordings.
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
@@ -373,6 +375,16 @@ impl<'a> Fit<'a> {
                 (self.acting(&delay.of_recordings(recordings))?, delay)
             }
         };
+        let again = |repeat: &Recording| recordings.iter().any(|one| one.has_samples_of(repeat));
+        if self.repeats.iter().any(again) {
+            let what =
+                "a recording that should widen the band to other sessions is among those fitted";
+            let remedy = Remedy::new(
+                "take one of another session for {}",
+                [Setting::any("repeat")],
+            );
+            return Err(Error::Fit(what.to_owned()).remedied(remedy));
+        }
         widen(&mut model, &delay.of_recordings(&self.repeats))?;
         Ok(model.with_delay(delay))
     }

@@ -218,6 +218,11 @@ impl Recording {
         Ok(recording)
     }
 
+    /// Whether both have the same inputs and outputs: one and the same recording, or a copy.
+    pub(crate) fn has_samples_of(&self, other: &Self) -> bool {
+        self.input == other.input && self.output == other.output
+    }
+
     /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -20,6 +20,11 @@ const RESTS: f64 = 0.02;
 /// More than this share of the samples cannot be lost.
 const MOST: f64 = 0.5;
 
+/// Readings that are held for fewer samples do little to a model.
+const SHORTEST_HELD: usize = 3;
+/// So much of a series has to be held equally long.
+const REGULAR: f64 = 0.6;
+
 /// Number of steps on either side that tell where a series goes.
 const STEPS: usize = 6;
 
@@ -69,6 +74,29 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
         false => run.start + 1,
     };
     held.iter().map(|run| begin(run)..run.end).collect()
+}
+
+/// The number of samples for which an input is held from one reading to the next, if it is a slow
+/// sensor's in a fast log: while a reading is held, what follows it goes on as it does when the next
+/// one comes. `None` for set points, where it jumps with them.
+pub(crate) fn held_between_readings(values: &[f64], follower: &[f64]) -> Option<usize> {
+    let lengths = values.chunk_by(|a, b| a == b).map(<[f64]>::len);
+    let mut sorted: Vec<usize> = lengths.collect();
+    sorted.sort_unstable();
+    let usual = *sorted.get(sorted.len() / 2)?;
+    let alike = sorted
+        .iter()
+        .filter(|length| length.abs_diff(usual) <= 1)
+        .sum::<usize>();
+    if usual < SHORTEST_HELD || (alike as f64) < REGULAR * values.len() as f64 {
+        return None;
+    }
+    let pairs = values.windows(2).zip(follower.windows(2));
+    let steps = pairs.map(|(x, y)| (x[0] == x[1], (y[1] - y[0]).abs()));
+    let (inside, between): (Vec<_>, Vec<_>) = steps.partition(|(held, _)| *held);
+    let [inside, between] =
+        [inside, between].map(|steps| median_of(steps.into_iter().map(|(_, step)| step).collect()));
+    (inside > 0.0 && between < STEP * inside).then_some(usual)
 }
 
 /// The largest step just before and just after a run of samples.
@@ -220,6 +248,33 @@ mod tests {
         for rests in [off, steps, coarse, vec![1.0; 9], vec![]] {
             assert_eq!(held(&rests, Some(&follower[..rests.len()])), []);
         }
+    }
+
+    #[test]
+    fn a_slow_sensor_in_a_fast_log_is_no_staircase() {
+        let clean = swings();
+        for every in [1, 2, 4, 6] {
+            let held = |n: usize| clean[n - n % every];
+            let slow: Vec<f64> = (0..clean.len()).map(held).collect();
+            let found = held_between_readings(&slow, &clean);
+            assert_eq!(found, (every > 2).then_some(every));
+            // Set points, which the output reaches at once, or late.
+            let mut late = slow.clone();
+            for n in 1..late.len() {
+                late[n] = late[n - 1] + 0.7 * (slow[n] - late[n - 1]);
+            }
+            for follower in [&slow, &late] {
+                assert_eq!(
+                    held_between_readings(&slow, follower),
+                    None,
+                    "every {every}"
+                );
+            }
+        }
+        // A coarse reading.
+        let coarse: Vec<f64> = clean.iter().map(|x| x.round()).collect();
+        assert_eq!(held_between_readings(&coarse, &clean), None);
+        assert_eq!(held_between_readings(&[], &[]), None);
     }
 
     #[test]

@@ -8,6 +8,8 @@ use crate::hold_out::HeldOut;
 use crate::identify::kept::{DIFFERENT, SPEED, UNDONE_LAG};
 use crate::model::{FitSummary, Model};
 use crate::recording::{ONE, Recording, one_speed};
+use crate::series::clipped::{Clipped, clipped};
+use crate::series::lost::held_between_readings;
 use crate::series::{different_branches, usual_tolerance};
 
 /// Why a model is not better.
@@ -29,6 +31,21 @@ pub enum Cause {
         samples: usize,
         /// Number of these samples that [`crate::prepare`] would replace.
         replaced: usize,
+    },
+    /// The output keeps one value at an end of its range while the input goes on: its sensor may end
+    /// there, or a stop.
+    Clipped {
+        /// The value.
+        value: f64,
+        /// How often it came there.
+        times: usize,
+        /// The number of such readings.
+        samples: usize,
+    },
+    /// The input is held between readings of its sensor, while the output goes on.
+    HeldInput {
+        /// For so many samples.
+        samples: usize,
     },
     /// The model's band, which should hold 95 % of the samples, holds much less of them.
     Elsewhere {
@@ -68,11 +85,13 @@ pub enum Cause {
         /// The speed, per second.
         speed: f64,
     },
-    /// What comes late in the model was found where the input had one speed, and this one has
-    /// others.
+    /// The model was fitted where the input had one speed, and this one has others.
     OtherSpeed {
         /// The speed, per second.
         speed: f64,
+        /// Whether the model has what comes late. Without it, what another speed changes looks like
+        /// a gain or a shift.
+        late: bool,
     },
     /// The model was fitted to inputs in which the lag of the sensor was undone, and here it is
     /// not.
@@ -147,6 +166,8 @@ impl Cause {
                 PartKind::Drift => "drift",
             },
             Self::Readings { .. } => "readings",
+            Self::Clipped { .. } => "clipped",
+            Self::HeldInput { .. } => "held_input",
             Self::Elsewhere { .. } => "elsewhere",
             Self::Rival { .. } => "rival",
             Self::Noise { .. } => "noise",
@@ -166,10 +187,13 @@ impl Cause {
         match self {
             Self::Outside { share } if *share > OUTSIDE => 3.0,
             Self::LagLeft { .. } => 2.5,
-            Self::OtherSpeed { .. } => 2.2,
+            Self::OtherSpeed { late: true, .. } => 2.2,
+            // A part that explains nearly all of the error is not there by chance.
+            Self::OtherSpeed { late: false, .. } => 1.95,
             Self::Readings { share, .. } => 1.0 + share,
             Self::Part(part) => 1.0 + part.share,
             Self::Rival { .. } => 0.9,
+            Self::Clipped { .. } | Self::HeldInput { .. } => 0.86,
             Self::Elsewhere { .. } => 0.85,
             Self::LoadsLeftOut { .. } => 0.82,
             Self::OneSpeed { .. } => 0.81,
@@ -255,6 +279,30 @@ fn places(values: &[f64]) -> impl Iterator<Item = f64> {
     })
 }
 
+/// Recordings whose output is cut off; the one with most such readings tells.
+pub(super) fn cut_off(recordings: &[Recording]) -> Option<Cause> {
+    let found = recordings.iter();
+    let found = found.filter_map(|recording| clipped(&recording.input, &recording.output));
+    let most = found.max_by_key(|found| found.samples)?;
+    let Clipped {
+        value,
+        times,
+        samples,
+    } = most;
+    Some(Cause::Clipped {
+        value,
+        times,
+        samples,
+    })
+}
+
+/// Recordings whose input is held; the one that holds it longest tells.
+pub(super) fn held_input(recordings: &[Recording]) -> Option<Cause> {
+    let held = recordings.iter();
+    let held = held.filter_map(|one| held_between_readings(&one.input, &one.output));
+    held.max().map(|samples| Cause::HeldInput { samples })
+}
+
 /// What the recordings of an evaluation have not in common with those that were fitted.
 pub(super) fn other_circumstances(model: &Model, recordings: &[Recording]) -> Vec<Cause> {
     let Some(fit) = &model.fit else {
@@ -272,10 +320,9 @@ pub(super) fn other_circumstances(model: &Model, recordings: &[Recording]) -> Ve
     let here = one_speed(recordings);
     let is_other = |speed: &f64| here.is_none_or(|here| here.max(*speed) >= ONE * here.min(*speed));
     let timed = recordings.iter().all(|recording| recording.time.is_some());
-    let speed = speed
-        .filter(|_| timed && comes_late(model))
-        .filter(is_other);
-    let speed = speed.map(|speed| Cause::OtherSpeed { speed });
+    let late = comes_late(model);
+    let speed = speed.filter(is_other).filter(|_| timed);
+    let speed = speed.map(|speed| Cause::OtherSpeed { speed, late });
     left.into_iter().chain(speed).collect()
 }
 

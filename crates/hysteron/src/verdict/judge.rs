@@ -46,7 +46,8 @@ impl Verdict {
             .any(|cause| matches!(cause, Cause::Outside { share } if *share > cause::OUTSIDE));
         let guessed = self.causes.iter().any(|cause| {
             let few = matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. });
-            few || matches!(cause, Cause::LoadsLeftOut { .. } | Cause::OneSpeed { .. })
+            let unseen = matches!(cause, Cause::Clipped { .. } | Cause::HeldInput { .. });
+            few || unseen || matches!(cause, Cause::LoadsLeftOut { .. } | Cause::OneSpeed { .. })
         });
         self.grade = match (by_error, rival_wins) {
             _ if outside => Grade::Poor,

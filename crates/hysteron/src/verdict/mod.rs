@@ -26,6 +26,7 @@ use crate::error::Result;
 use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::{Forward, forward};
 use crate::hold_out::held_out;
+use crate::identify::kept::SPEED;
 use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Quantity, Recording, no_recordings, one_speed};
 use crate::rivals::{Rival, RivalKind, SMALL};
@@ -267,7 +268,12 @@ impl Verdict {
             },
         };
         verdict.noise = noise_of(recordings, output);
-        verdict.one_speed = one_speed(recordings);
+        // A part of what was fitted may have one speed where all of it has several.
+        let at_one = fit.and_then(|fit| fit.other.get(SPEED)?.as_f64());
+        verdict.one_speed = match was_fitted && fit.is_some() {
+            true => at_one,
+            false => one_speed(recordings),
+        };
         verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
         verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());
         let percent = verdict.percent.unwrap_or(f64::INFINITY);
@@ -293,6 +299,10 @@ impl Verdict {
         }
         if percent > GOOD {
             verdict.causes.extend(readings::cause(recordings, output));
+        }
+        if was_fitted || percent > GOOD {
+            verdict.causes.extend(cause::cut_off(recordings));
+            verdict.causes.extend(cause::held_input(recordings));
         }
         verdict.worst = worst(recordings, output, outliers);
         Ok(verdict)

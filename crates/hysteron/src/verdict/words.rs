@@ -137,9 +137,14 @@ impl Verdict {
                  from a wider loop: at other speeds it is a guess",
                 self.input.text(*speed)
             ),
-            Cause::OtherSpeed { speed } => format!(
+            Cause::OtherSpeed { speed, late: true } => format!(
                 "what comes late in the model was found at one speed ({} per second), and this one \
                  has others: there it was a guess",
+                self.input.text(*speed)
+            ),
+            Cause::OtherSpeed { speed, late: false } => format!(
+                "the model was fitted at one speed ({} per second), and this one has others: what \
+                 comes late is not in the model",
                 self.input.text(*speed)
             ),
             Cause::LagLeft { tau } => format!(
@@ -150,6 +155,22 @@ impl Verdict {
             Cause::Easier { percent } => format!(
                 "the model errs {percent:.2} % of the range on what it was fitted to: what was held \
                  out is easier than that"
+            ),
+            Cause::Clipped {
+                value,
+                times,
+                samples,
+            } => format!(
+                "{} came to {} {times} times and stayed there for {samples} readings while {} went \
+                 on: if its sensor ends there, the model errs by what it did not see",
+                self.output.name,
+                self.output.text(*value),
+                self.input.name
+            ),
+            Cause::HeldInput { samples } => format!(
+                "{} is held for {samples} samples from reading to reading while {} goes on: what \
+                 looks late may be that",
+                self.input.name, self.output.name
             ),
             Cause::Elsewhere { coverage, sessions } => format!(
                 "only {coverage:.1} % of the samples are inside the {}: it does not belong to \
@@ -335,13 +356,31 @@ impl Verdict {
                 "undo it here too, with {} and that time constant",
                 [Setting::any("sensor-lag")],
             ),
-            Some(Cause::OtherSpeed { .. }) => Remedy::new(
+            Some(Cause::OtherSpeed { late: true, .. }) if self.tried.thermal => Remedy::new(
+                "fit both recordings together, so that there are several speeds",
+                [],
+            ),
+            Some(Cause::OtherSpeed { late: true, .. }) => Remedy::new(
                 "fit both recordings together, so that there are several speeds, or compare a fit \
                  without what comes late: {}",
                 [Setting::word("dynamics", "off")],
             ),
+            Some(Cause::OtherSpeed { late: false, .. }) => Remedy::new(
+                "fit both recordings together, with the time, and look for creep ({}) or, if the \
+                 input is a drive, for a body that heats ({})",
+                [CREEP, Setting::on("thermal")],
+            ),
             Some(Cause::OneSpeed { .. }) => Remedy::new(
                 "record at two speeds or more, of which one is several times the other",
+                [],
+            ),
+            Some(Cause::Clipped { .. }) => Remedy::new(
+                "record within the reach of the sensor; a stop of the mechanism looks the same, and \
+                 is followed",
+                [],
+            ),
+            Some(Cause::HeldInput { .. }) => Remedy::new(
+                "read the input as often as the output, or log both at the pace of the slower one",
                 [],
             ),
             Some(Cause::LoadsLeftOut { .. }) => {

@@ -92,6 +92,33 @@ fn before(model: &Model, recording: &Recording, learner: Learner, count: usize) 
     kept
 }
 
+/// A hum in the second half is learned as if the plant had changed: what is left then errs on the
+/// first half. It is never called better.
+#[test]
+fn what_a_hum_teaches_is_no_gain() {
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = actuator(&mut rng, 11.3);
+        let mut recording = recorded(&mut rng, &model, 0.01);
+        recording.output = model.simulate(&recording.input).unwrap();
+        let (size, pace) = (
+            11.3 * rng.random_range(0.05..0.4),
+            rng.random_range(0.05..2.0),
+        );
+        let half = recording.len() / 2;
+        for (n, y) in recording.output[half..].iter_mut().enumerate() {
+            *y += size * (pace * n as f64).sin();
+        }
+        let adapted = adapt(&model, &recording, &by(Learner::Auto), Progress::NONE).unwrap();
+        let last = adapted.model.simulate(&recording.input).unwrap();
+        let harmed = Errors::between(&recording.output, &last, |n| n < half).unwrap();
+        assert!(
+            adapted.worse || harmed.rmse < 0.01 * 11.3,
+            "seed {seed}: {harmed:?}, {size} {pace}"
+        );
+    }
+}
+
 #[test]
 fn the_model_after_a_freeze_is_one_from_before_it() {
     for seed in 0..60 {

@@ -1,8 +1,8 @@
 //! The verdict on a model: faults of a known kind are named, and grades follow the error.
 
 use hysteron::{
-    Basis, Cause, Evaluation, Fit, FitOptions, Grade, HoldOut, Model, Operator, PartKind, Plane,
-    Recording, Sign, Verdict, error_parts, evaluate, fit_holding_out, forward,
+    Basis, Cause, Dynamics, Evaluation, Fit, FitOptions, Grade, HoldOut, Model, Operator, PartKind,
+    Plane, Recording, Sign, Verdict, error_parts, evaluate, fit_holding_out, forward,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -523,48 +523,114 @@ fn what_was_held_out_is_judged_by_itself() {
     assert_eq!(of_part, Verdict::of_fit(&model, &first).unwrap());
 }
 
+/// A recording of a plant whose output comes late, with the speeds in turn.
+fn late(plant: &Model, seed: u64, speeds: [f64; 3]) -> Recording {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut input = vec![20.0_f64];
+    for n in 0..40 {
+        let last = input[input.len() - 1];
+        let end = match n % 2 == 0 {
+            true => rng.random_range(55.0..80.0),
+            false => rng.random_range(20.0..45.0),
+        };
+        let count = ((end - last).abs() / speeds[n % 3]).ceil();
+        input.extend((1..=count as i32).map(|k| last + (end - last) * f64::from(k) / count));
+    }
+    let mut lagged = 3.0;
+    let late = plant.simulate(&input).unwrap().into_iter().map(|y| {
+        lagged += (y - lagged) / 5.0;
+        lagged + 0.01 * rng.random_range(-1.0..1.0)
+    });
+    let output = late.collect();
+    let mut recording = Recording::new(input, output).unwrap();
+    recording.time = Some((0..recording.len()).map(|n| n as f64).collect());
+    recording
+}
+
+fn is_at_one_speed(verdict: &Verdict) -> bool {
+    let one = |cause: &Cause| matches!(cause, Cause::OneSpeed { .. });
+    verdict.causes.iter().any(one)
+}
+
 /// A lag that was found at one speed is a wider loop at that speed; at several it is a lag.
 #[test]
 fn a_lag_found_at_one_speed_is_no_promise() {
-    let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let plant = model(&weights(&mut rng));
-    let mut recorded = |speeds: [f64; 3]| {
-        let mut input = vec![20.0_f64];
-        for n in 0..40 {
-            let last = input[input.len() - 1];
-            let (end, speed) = match n % 2 == 0 {
-                true => (rng.random_range(55.0..80.0), speeds[n % 3]),
-                false => (rng.random_range(20.0..45.0), speeds[n % 3]),
-            };
-            let count = ((end - last).abs() / speed).ceil();
-            input.extend((1..=count as i32).map(|k| last + (end - last) * f64::from(k) / count));
-        }
-        let mut lagged = 3.0;
-        let late = plant.simulate(&input).unwrap().into_iter().map(|y| {
-            lagged += (y - lagged) / 5.0;
-            lagged + 0.01 * rng.random_range(-1.0..1.0)
-        });
-        let output = late.collect();
-        let mut recording = Recording::new(input, output).unwrap();
-        recording.time = Some((0..recording.len()).map(|n| n as f64).collect());
-        recording
-    };
+    let plant = model(&weights(&mut ChaCha8Rng::seed_from_u64(3)));
     for (speeds, is_one) in [([0.8, 0.8, 0.8], true), ([0.4, 0.8, 1.6], false)] {
-        let recording = recorded(speeds);
+        let recording = late(&plant, 4, speeds);
         let model = Fit::new().bootstrap(0).run(&recording).unwrap();
         assert!(model.is_timed());
         let verdict = Verdict::of_fit(&model, &recording).unwrap();
-        let one = verdict
-            .causes
-            .iter()
-            .any(|cause| matches!(cause, Cause::OneSpeed { .. }));
-        assert_eq!(one, is_one, "{verdict}");
+        assert_eq!(is_at_one_speed(&verdict), is_one, "{verdict}");
         assert_eq!(verdict.grade == Grade::Good, !is_one, "{verdict}");
         assert_eq!(
             verdict.next().to_string().contains("two speeds"),
             is_one,
             "{verdict}"
         );
+    }
+}
+
+/// A part of what was fitted has one speed where all of it has two: that is no cause.
+#[test]
+fn all_of_what_was_fitted_tells_its_speeds() {
+    let plant = model(&weights(&mut ChaCha8Rng::seed_from_u64(3)));
+    let both = [0.4, 1.6].map(|speed| late(&plant, 4, [speed; 3]));
+    let fitted = Fit::new().bootstrap(0).run(&both).unwrap();
+    assert!(fitted.is_timed());
+    for one in &both {
+        let evaluation = evaluate(&fitted, one).unwrap();
+        let verdict = Verdict::of_evaluation(&fitted, one, &evaluation).unwrap();
+        assert!(!is_at_one_speed(&verdict), "{verdict}");
+    }
+}
+
+/// What another speed changes looks like a gain: to adapt to it would spoil the model.
+#[test]
+fn another_speed_is_told_of_a_model_without_what_comes_late() {
+    let plant = model(&weights(&mut ChaCha8Rng::seed_from_u64(3)));
+    let [slow, fast] = [0.4, 3.2].map(|speed| late(&plant, 4, [speed; 3]));
+    let fit = Fit::new().bootstrap(0).dynamics(Dynamics::Off);
+    let fitted = fit.run(&slow).unwrap();
+    assert!(!fitted.is_timed());
+    let evaluation = evaluate(&fitted, &fast).unwrap();
+    let verdict = Verdict::of_evaluation(&fitted, &fast, &evaluation).unwrap();
+    let first = &verdict.causes[0];
+    assert!(
+        matches!(first, Cause::OtherSpeed { late: false, .. }),
+        "{verdict}"
+    );
+    assert!(
+        verdict.next().to_string().contains("both recordings"),
+        "{verdict}"
+    );
+}
+
+/// A sensor at its limit, and one that is read seldom: a model follows both, and errs elsewhere.
+#[test]
+fn what_a_sensor_did_not_see_is_no_promise() {
+    let plant = model(&[0.5; 78]);
+    let (off, on) = plant.output_range();
+    let (low, high) = (off + 0.1 * (on - off), on - 0.1 * (on - off));
+    let clean = recording(&plant, |_, y| y);
+    let mut held = clean.clone();
+    for n in 0..held.len() {
+        held.input[n] = clean.input[n - n % 6];
+    }
+    let cases = [
+        (clean.clone(), None),
+        (recording(&plant, |_, y| y.max(low)), Some("clipped")),
+        (recording(&plant, |_, y| y.min(high)), Some("clipped")),
+        (held, Some("held_input")),
+    ];
+    for (recording, name) in cases {
+        let fitted = Fit::new().bootstrap(0).run(&recording).unwrap();
+        let verdict = Verdict::of_fit(&fitted, &recording).unwrap();
+        let names: Vec<_> = verdict.causes.iter().map(Cause::name).collect();
+        let found = ["clipped", "held_input"].into_iter();
+        let found = found.filter(|name| names.contains(name)).next();
+        assert_eq!(found, name, "{verdict}");
+        assert_eq!(verdict.grade == Grade::Good, name.is_none(), "{verdict}");
     }
 }
 

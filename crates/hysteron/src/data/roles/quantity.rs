@@ -26,6 +26,8 @@ pub(super) enum Quantity {
     /// Says something about another column, or about the room.
     About,
     Drive,
+    /// A number in percent, of whatever.
+    Share,
     Temperature,
     Voltage,
     Current,
@@ -56,6 +58,7 @@ impl Quantity {
             Self::Time | Self::Counter | Self::About => [0, 0, 0],
             Self::Drive => [40, 0, 0],
             Self::Temperature | Self::Voltage | Self::Field => [30, 0, 0],
+            Self::Share => [22, 0, 0],
             Self::Current | Self::Power | Self::Pressure => [20, 0, 0],
             Self::Response => [0, 40, 0],
             Self::Displacement | Self::Strain | Self::Angle => [0, 30, 0],
@@ -76,6 +79,7 @@ impl Quantity {
             Self::Counter => "a counter",
             Self::About => "about another column",
             Self::Drive => "a drive",
+            Self::Share => "a share",
             Self::Temperature => "a temperature",
             Self::Voltage => "a voltage",
             Self::Current => "a current",

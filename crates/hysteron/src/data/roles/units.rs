@@ -17,7 +17,7 @@ pub(super) fn may_measure(unit: &str) -> &'static [Quantity] {
         Some(Measures::Length) => &[Displacement],
         Some(Measures::Angle) => &[Angle],
         Some(Measures::Strain) => &[Strain],
-        Some(Measures::Share) => &[Drive, Strain],
+        Some(Measures::Share) => &[Share, Strain],
         Some(Measures::Polarization) => &[Polarization],
         Some(Measures::Flux) => &[Flux],
         Some(Measures::Resistance) => &[Resistance],

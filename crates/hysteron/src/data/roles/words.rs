@@ -20,7 +20,7 @@ const WHOLE: &[(Quantity, &[&str])] = &[
         About,
         &[
             "std", "err", "set", "sp", "soll", "ref", "room", "raum", "model", "copied", "status",
-            "noise", "flag", "code",
+            "noise", "flag", "code", "rh", "fan", "bat",
         ],
     ),
     (Drive, &["in", "pwm", "cmd"]),
@@ -81,6 +81,7 @@ const PART: &[(Quantity, &[&str])] = &[
             "numér",
         ],
     ),
+    (About, &["humid", "feuchte", "luftf", "batter"]),
     (
         About,
         &[

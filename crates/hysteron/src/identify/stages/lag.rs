@@ -25,8 +25,8 @@ const HINT: f64 = 0.05;
 const LONG: f64 = 4.0;
 const LONG_WORTH: f64 = 0.5;
 
-/// Looks for a lag; `None` where it does not predict parts of the recordings that were left out, or
-/// samples come at the same time.
+/// Looks for a lag; `None` where it does not predict parts of the recordings that were left out, is
+/// shorter than a sampling step, or samples come at the same time.
 pub(super) fn find(
     recordings: &[Recording],
     options: &FitOptions,
@@ -66,7 +66,10 @@ pub(super) fn find(
         true => LONG_WORTH,
         false => WORTH,
     };
-    let is_worth = with.gains(worth, &without, search.noise);
+    // Within a step a lag is one with the way in which the input is held, and other steps have
+    // another.
+    let is_seen = with.after.lag() >= search.step;
+    let is_worth = is_seen && with.gains(worth, &without, search.noise);
     Ok(is_worth.then_some((with.after, report)))
 }
 

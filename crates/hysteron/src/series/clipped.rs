@@ -1,0 +1,146 @@
+//! Finds an output that stands at an end of what its sensor reads.
+
+use crate::series::noise::median_of;
+use crate::series::spread::range;
+use std::ops::Range;
+
+/// Fewer equal readings in a row may be chance.
+const SHORTEST: usize = 4;
+/// So may be a single run.
+const TIMES: usize = 2;
+/// The input goes on by this share of its range before it turns. In a dead band, an output rests
+/// from where the input turns.
+const GOES_ON: f64 = 0.02;
+/// An output that rests elsewhere too, with more than this share of its samples, goes by steps.
+const RESTS: f64 = 0.02;
+/// A material comes to its end slowly, and leaves it slowly. What is cut off has steps of this share
+/// of the usual one there; of two, one may be cut itself.
+const KINK: f64 = 0.5;
+/// Number of steps that tell where the input goes.
+const STEPS: usize = 6;
+
+/// Readings at an end of the output's range, which the output reaches again and again, and keeps to
+/// the last digit while the input goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Clipped {
+    pub(crate) value: f64,
+    pub(crate) times: usize,
+    pub(crate) samples: usize,
+}
+
+/// The end of the output that has more such readings, if one has them. A mechanical stop looks the
+/// same: readings do not tell.
+pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<Clipped> {
+    let (low, high) = range(output);
+    let is_end = |value: f64| value == low || value == high;
+    let equal = output.windows(2).filter(|pair| pair[0] == pair[1]);
+    let rests = equal.filter(|pair| !is_end(pair[0])).count();
+    if rests as f64 > RESTS * output.len() as f64 {
+        return None;
+    }
+    let steps = output.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let usual = median_of(steps.filter(|step| *step > 0.0).collect());
+    let (least, most) = range(input);
+    let goes_on = |run: &Range<usize>| {
+        let at = input[run.start];
+        let way = at - input[run.start.saturating_sub(STEPS)];
+        let beyond = input[run.clone()].iter().map(|x| (x - at) * way.signum());
+        way != 0.0 && beyond.fold(0.0, f64::max) >= GOES_ON * (most - least)
+    };
+    let mut end = 0;
+    let runs = output.chunk_by(|a, b| a == b).map(|run| {
+        end += run.len();
+        end - run.len()..end
+    });
+    let is_cut = |run: &Range<usize>| {
+        let stays = run.len() >= SHORTEST && is_end(output[run.start]);
+        stays && goes_on(run) && kink(output, run) >= KINK * usual
+    };
+    let runs: Vec<Range<usize>> = runs.filter(is_cut).collect();
+    let at = |value: f64| {
+        let runs = runs.iter().filter(|run| output[run.start] == value);
+        let samples = runs.clone().map(Range::len).sum();
+        let times = runs.count();
+        Clipped {
+            value,
+            times,
+            samples,
+        }
+    };
+    let ends = [at(low), at(high)].into_iter();
+    let ends = ends.filter(|end| end.times >= TIMES && low < high);
+    ends.max_by_key(|end| end.samples)
+}
+
+/// The step with which a series comes to a run, or with which it leaves it, whichever is smaller.
+fn kink(values: &[f64], run: &Range<usize>) -> f64 {
+    let largest = |pairs: &[f64]| {
+        let steps = pairs.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        steps.fold(0.0, f64::max)
+    };
+    let before = largest(&values[run.start.saturating_sub(2)..=run.start]);
+    let after = largest(&values[run.end - 1..values.len().min(run.end + 2)]);
+    match run.end == values.len() {
+        true => before,
+        false => before.min(after),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A play behind an S, noisy or not.
+    fn loops(noise: f64) -> (Vec<f64>, Vec<f64>) {
+        let input: Vec<f64> = (0..3000)
+            .map(|n| 10.0 * (f64::from(n) * 0.02).sin())
+            .collect();
+        let mut play = 0.0_f64;
+        let follow = |(n, x): (usize, &f64)| {
+            play = play.clamp(x - 2.0, x + 2.0);
+            let (n, cut) = (n as f64, (play / 4.0).clamp(-1.0, 1.0));
+            1.5 * cut - 0.5 * cut.powi(3) + noise * (n * 12.9898).sin()
+        };
+        let output = input.iter().enumerate().map(follow).collect();
+        (input, output)
+    }
+
+    #[test]
+    fn what_is_cut_off_is_found() {
+        let (input, clean) = loops(1e-3);
+        for limit in [0.3, 0.6, 0.9] {
+            let high: Vec<f64> = clean.iter().map(|y| y.min(limit)).collect();
+            let found = clipped(&input, &high).map(|found| (found.value, found.times));
+            assert_eq!(found, Some((limit, 10)));
+            let low: Vec<f64> = clean.iter().map(|y| y.max(-limit)).collect();
+            let found = clipped(&input, &low).map(|found| (found.value, found.times));
+            assert_eq!(found, Some((-limit, 9)));
+        }
+    }
+
+    #[test]
+    fn what_rests_by_itself_is_not() {
+        // Saturation that is reached slowly; dead bands; steps; a coarse reading; a rest.
+        let (input, saturates) = loops(0.0);
+        let (_, noisy) = loops(1e-3);
+        let mut play = 0.0_f64;
+        let dead_band = input.iter().map(|x| {
+            play = play.clamp(x - 2.0, x + 2.0);
+            play
+        });
+        let coarse = saturates.iter().map(|y| (y * 20.0).round());
+        let steps = (0..3000).map(|n| f64::from(n / 50 % 7));
+        let cases: [Vec<f64>; 6] = [
+            saturates.clone(),
+            noisy,
+            dead_band.collect(),
+            coarse.collect(),
+            steps.collect(),
+            vec![1.0; 3000],
+        ];
+        for (n, output) in cases.iter().enumerate() {
+            assert_eq!(clipped(&input, output), None, "case {n}");
+        }
+        assert_eq!(clipped(&[], &[]), None);
+    }
+}
