@@ -102,6 +102,23 @@ pub(crate) fn advice(
     Ok(advice)
 }
 
+/// Whether a model of the prepared recordings predicts what it leaves out better than this one of
+/// the recordings as they are. Recordings that cannot be prepared are no better.
+pub(crate) fn helps(
+    recordings: &[Recording],
+    model: &Model,
+    fit: impl Fn(&[Recording]) -> Result<Model>,
+) -> Result<bool> {
+    let options = PrepareOptions::default();
+    let ready = recordings.iter();
+    let ready = ready.map(|one| Ok(hysteron::prepare(one, &options, Progress::NONE)?.0));
+    let Ok(ready) = ready.collect::<hysteron::Result<Vec<Recording>>>() else {
+        return Ok(false);
+    };
+    let left_out = |model: &Model| Some(model.fit.as_ref()?.validation.as_ref()?.rmse);
+    Ok(left_out(&fit(&ready)?) < left_out(model))
+}
+
 /// As [`asked_for`], with what a fit is warned of; the report is for the JSON.
 pub(crate) fn before_fit(
     recording: Recording,
@@ -164,17 +181,18 @@ fn options(steps: &args::Steps, lag: Option<Step>, defaults: PrepareOptions) -> 
 
 /// What a step that was left to the data gained.
 fn judged_line(judged: &Judged, output: &Quantity) -> String {
-    let (step, samples) = (judged.step, judged.samples);
+    let step = judged.step;
+    let samples = hysteron::counted(judged.samples, "sample");
     let verdict = if judged.kept { "taken" } else { "not taken" };
     match (judged.before, judged.after) {
         (Some(before), Some(after)) => format!(
-            "{step}: {verdict}. With its {samples} samples a model errs by {} on what it did not \
+            "{step}: {verdict}. With its {samples} a model errs by {} on what it did not \
              see, without by {}",
             output.text(after),
             output.text(before)
         ),
         _ => format!(
-            "{step}: {verdict}. The recording is too short to tell whether its {samples} samples \
+            "{step}: {verdict}. The recording is too short to tell whether its {samples} \
              help"
         ),
     }

@@ -164,7 +164,10 @@ fn to_text(found: &Summary) -> String {
         ));
     }
     if let Some(rmse) = found.rmse {
-        lines.push(format!("error {} (root mean square)", text::number(rmse)));
+        let rmse = text::number(rmse);
+        lines.push(format!(
+            "error {rmse} (root mean square, from the first sample on)"
+        ));
     }
     if let Some(share) = found.learned {
         lines.push(format!(

@@ -50,9 +50,14 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let recordings = prepare::each_asked_for(recordings, &args.prepare)?;
     let model = fit(&recordings)?;
     let verdict = Verdict::of_fit(&model, &recordings)?;
-    let advice = prepare::advice(&model, &recordings, &args.prepare)?;
-    let prepared = args.prepare.prepare || advice.iter().any(Advice::is_cured_by_preparation);
-    let prepared = prepared && (args.prepare.prepare || summary.doubts.is_empty());
+    let mut advice = prepare::advice(&model, &recordings, &args.prepare)?;
+    let prepared = args.prepare.prepare
+        || summary.doubts.is_empty()
+            && advice.iter().any(Advice::is_cured_by_preparation)
+            && prepare::helps(&recordings, &model, fit)?;
+    if !prepared {
+        advice.retain(|one| !one.is_cured_by_preparation());
+    }
     let commands = commands(args, columns, prepared, step_of(&model, &recordings));
     if let Some(file) = file {
         file.commit_with(model.to_json().as_bytes())?;
@@ -219,12 +224,17 @@ fn commands(
     if prepared {
         named += " --prepare";
     }
+    let ending = args
+        .file
+        .extension()
+        .map_or("".into(), |ending| ending.to_string_lossy());
+    let other = shell_word(&format!("ANOTHER.{ending}"));
     let dt = step.map_or(String::new(), |step| {
         format!(" --dt {}", text::number(step))
     });
     let mut commands = vec![
         format!("hysteron fit {file} {named} -o model.json"),
-        format!("hysteron evaluate model.json {file} {named} --report report"),
+        format!("hysteron evaluate model.json {other} {named} --report report"),
         format!("hysteron export c model.json{dt} -o model-c"),
     ];
     if cfg!(feature = "studio") {

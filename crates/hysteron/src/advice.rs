@@ -165,8 +165,8 @@ impl fmt::Display for Advice {
             ),
             Self::OpenStart { operators } => write!(
                 f,
-                "the first input does not determine the state of {operators} operators: they are \
-                 taken as off"
+                "the recording does not begin at its lowest input, so {operators} operators could be \
+                 on or off there: they are taken as off"
             ),
         }
     }

@@ -185,11 +185,14 @@ impl Job {
     }
 }
 
+/// Without the rounding of the times that it lies between, as a field on the page shows it.
 fn median_step(time: &[f64]) -> Option<f64> {
+    let rounded = |step: f64| format!("{step:.9e}").parse().unwrap_or(step);
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps
         .get(steps.len() / 2)
         .copied()
         .filter(|step| *step > 0.0)
+        .map(rounded)
 }

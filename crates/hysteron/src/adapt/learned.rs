@@ -27,12 +27,12 @@ fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
     }
 }
 
-/// Whether the last model errs more over all samples than the one left alone, and learning gained
-/// little while it lasted, with the readings that it rejected: a hum does this. Where a plant has
-/// changed, learning gains much.
-fn spoilt(again: &Errors, whole: &Compared, thirds: &[Compared]) -> bool {
-    let gains = |last: &Compared| last.adapting.rmse < GAINS * last.fixed.rmse;
-    again.rmse > whole.fixed.rmse && thirds.last().is_some_and(|last| !gains(last))
+/// Whether learning gained much over the last third of the samples: while it lasted, with the
+/// readings that it rejected, and as the last model runs over them again. It does where a plant has
+/// changed. A hum can be followed, but not learned.
+fn is_of_use(thirds: &[Compared], again: Option<&Compared>) -> bool {
+    let gains = |with: &Compared| with.adapting.rmse < GAINS * with.fixed.rmse;
+    thirds.last().is_none_or(gains) && again.is_none_or(gains)
 }
 
 /// Whether the axis of the `offline` model has moved.
@@ -138,7 +138,9 @@ impl Learned {
             worse: is_worse(late.as_ref(), changed, offline.output_range())
                 || late.is_some_and(|late| late.says_nothing(late_spread))
                 || stays && again_late.is_some_and(|again| again.is_harm())
-                || stays && spoilt(&again, &whole, &thirds),
+                || stays
+                    && again.rmse > whole.fixed.rmse
+                    && !is_of_use(&thirds, again_late.as_ref()),
             drift,
             stuck,
             model: last,

@@ -27,14 +27,24 @@ impl Quantity {
         let Some((expected, found)) = units(self, data) else {
             return Ok(());
         };
-        match spelt(expected) == spelt(found) {
-            true => Ok(()),
-            false => Err(Error::Fit(format!(
-                "the {what} is in {expected}, `{}` of the data in {found}: convert the column to \
-                 {expected}, and name that unit in its header",
-                data.name
-            ))),
+        if spelt(expected) == spelt(found) {
+            return Ok(());
         }
+        let kinds = [expected, found].map(Measures::by);
+        let others = kinds.iter().all(Option::is_some) && kinds[0] != kinds[1];
+        let what_to_do = match others {
+            true => {
+                "that is another quantity: take another column, or a recording of this actuator"
+                    .into()
+            }
+            false => {
+                format!("convert the column to {expected}, and name that unit in its header")
+            }
+        };
+        Err(Error::Fit(format!(
+            "the {what} is in {expected}, `{}` of the data in {found}: {what_to_do}",
+            data.name
+        )))
     }
 }
 

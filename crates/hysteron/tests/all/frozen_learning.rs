@@ -93,7 +93,7 @@ fn before(model: &Model, recording: &Recording, learner: Learner, count: usize) 
 }
 
 /// A hum in the second half is learned as if the plant had changed: what is left then errs on the
-/// first half. It is never called better.
+/// first half. It is never called better, but where it errs there by less than a usable model.
 #[test]
 fn what_a_hum_teaches_is_no_gain() {
     for seed in 0..20 {
@@ -113,7 +113,7 @@ fn what_a_hum_teaches_is_no_gain() {
         let last = adapted.model.simulate(&recording.input).unwrap();
         let harmed = Errors::between(&recording.output, &last, |n| n < half).unwrap();
         assert!(
-            adapted.worse || harmed.rmse < 0.01 * 11.3,
+            adapted.worse || harmed.rmse < 0.02 * 11.3,
             "seed {seed}: {harmed:?}, {size} {pace}"
         );
     }

