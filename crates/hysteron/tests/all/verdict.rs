@@ -627,8 +627,8 @@ fn what_a_sensor_did_not_see_is_no_promise() {
         let fitted = Fit::new().bootstrap(0).run(&recording).unwrap();
         let verdict = Verdict::of_fit(&fitted, &recording).unwrap();
         let names: Vec<_> = verdict.causes.iter().map(Cause::name).collect();
-        let found = ["clipped", "held_input"].into_iter();
-        let found = found.filter(|name| names.contains(name)).next();
+        let mut both = ["clipped", "held_input"].into_iter();
+        let found = both.find(|name| names.contains(name));
         assert_eq!(found, name, "{verdict}");
         assert!(name.is_none() || verdict.grade != Grade::Good, "{verdict}");
     }
