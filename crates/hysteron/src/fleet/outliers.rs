@@ -27,8 +27,8 @@ pub struct Norm {
     scales: [(f64, f64); COUNT],
     /// The numbers that differ among the actuators.
     used: Vec<usize>,
-    /// The variance of each of these that the grid of the models makes.
-    of_grid: Vec<f64>,
+    /// The deviation of each number that the grid of the models makes.
+    of_grid: [f64; COUNT],
     centre: Vec<f64>,
     /// Lower triangle of the Cholesky factor of the covariance, row by row.
     factor: Vec<f64>,
@@ -113,13 +113,10 @@ impl Norm {
             scales,
             centre: vec![0.0; used.len()],
             factor: identity(used.len()),
-            of_grid: used
-                .iter()
-                .map(|n| match ON_GRID.contains(n) {
-                    true => (of_grid / scales[*n].1).powi(2),
-                    false => 0.0,
-                })
-                .collect(),
+            of_grid: std::array::from_fn(|n| match ON_GRID.contains(&n) {
+                true => of_grid,
+                false => 0.0,
+            }),
             used,
         };
         let points: Vec<Vec<f64>> = rows.iter().map(|row| norm.standard(row)).collect();
@@ -154,7 +151,7 @@ impl Norm {
             let (median, scale) = self.scales[n];
             match row[n] - median {
                 0.0 => 0.0,
-                off => off / scale,
+                off => off / scale.hypot(self.of_grid[n]),
             }
         };
         // A number that all others share may not differ at all.
@@ -208,7 +205,8 @@ impl Norm {
             }
         }
         for n in 0..count {
-            covariance[n * count + n] += LEAST + self.of_grid[n];
+            let used = self.used[n];
+            covariance[n * count + n] += LEAST + (self.of_grid[used] / self.scales[used].1).powi(2);
         }
         self.factor = cholesky(covariance, count);
     }
