@@ -102,8 +102,8 @@ pub(crate) fn advice(
     Ok(advice)
 }
 
-/// Whether a model of the prepared recordings predicts what it leaves out better than this one of
-/// the recordings as they are. Recordings that cannot be prepared are no better.
+/// Whether a model of the prepared recordings errs less on what it leaves out of them than this one
+/// of the recordings as they are. Recordings that cannot be prepared are no better.
 pub(crate) fn helps(
     recordings: &[Recording],
     model: &Model,
@@ -116,7 +116,10 @@ pub(crate) fn helps(
         return Ok(false);
     };
     let left_out = |model: &Model| Some(model.fit.as_ref()?.validation.as_ref()?.rmse);
-    Ok(left_out(&fit(&ready)?) < left_out(model))
+    let with = fit(&ready).ok().as_ref().and_then(left_out);
+    Ok(with
+        .zip(left_out(model))
+        .is_some_and(|(with, without)| with < without))
 }
 
 /// As [`asked_for`], with what a fit is warned of; the report is for the JSON.

@@ -51,12 +51,13 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     let model = fit(&recordings)?;
     let verdict = Verdict::of_fit(&model, &recordings)?;
     let mut advice = prepare::advice(&model, &recordings, &args.prepare)?;
-    let prepared = args.prepare.prepare
-        || summary.doubts.is_empty()
-            && advice.iter().any(Advice::is_cured_by_preparation)
-            && prepare::helps(&recordings, &model, fit)?;
-    if !prepared {
-        advice.retain(|one| !one.is_cured_by_preparation());
+    let mut prepared = args.prepare.prepare;
+    let is_asked = || advice.iter().any(Advice::is_cured_by_preparation);
+    if !prepared && summary.doubts.is_empty() && is_asked() {
+        prepared = prepare::helps(&recordings, &model, fit)?;
+        if !prepared {
+            advice.retain(|one| !one.is_cured_by_preparation());
+        }
     }
     let commands = commands(args, columns, prepared, step_of(&model, &recordings));
     if let Some(file) = file {
@@ -224,11 +225,9 @@ fn commands(
     if prepared {
         named += " --prepare";
     }
-    let ending = args
-        .file
-        .extension()
-        .map_or("".into(), |ending| ending.to_string_lossy());
-    let other = shell_word(&format!("ANOTHER.{ending}"));
+    let another = args.file.with_file_name("ANOTHER");
+    let another = another.with_extension(args.file.extension().unwrap_or_default());
+    let other = shell_word(&another.display().to_string());
     let dt = step.map_or(String::new(), |step| {
         format!(" --dt {}", text::number(step))
     });

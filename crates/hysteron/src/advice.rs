@@ -165,8 +165,8 @@ impl fmt::Display for Advice {
             ),
             Self::OpenStart { operators } => write!(
                 f,
-                "the recording does not begin at its lowest input, so {operators} operators could be \
-                 on or off there: they are taken as off"
+                "the recording does not begin at its lowest input, so {operators} operators could \
+                 be on or off there: they are taken as off"
             ),
         }
     }

@@ -110,7 +110,12 @@ fn after(stem: &str) -> String {
     }
     name.truncate(LONGEST);
     let short = &name[..name.len().min(LONGEST - OWN.len() - 1)];
-    let names = [format!("{OWN}_{short}"), format!("{short}_{OWN}")];
+    let both = &name[..name.len().min(LONGEST - 2 * (OWN.len() + 1))];
+    let names = [
+        format!("{OWN}_{short}"),
+        format!("{short}_{OWN}"),
+        format!("{OWN}_{both}_{OWN}"),
+    ];
     match fault(&name) {
         None => name,
         Some(_) => names
@@ -143,6 +148,7 @@ mod tests {
             ("NULL.json", "model_NULL"),
             ("wire-t.json", "wire_t_model"),
             ("range_MAX.json", "range_MAX_model"),
+            ("hys_x_t.json", "model_hys_x_t_model"),
         ];
         for (file, name) in cases {
             assert_eq!(choose(None, Path::new(file)).unwrap(), name, "{file}");

@@ -37,31 +37,32 @@ pub struct Adapted {
     /// samples.
     pub thirds: Vec<Compared>,
     /// Errors over the last third of the samples that are not [stuck](Adapted::stuck), without the
-    /// rejected readings and those on probation; [`Adapted::worse`] begins with them. `None` if there
-    /// are no such samples.
+    /// rejected readings and those on probation; [`Adapted::worse`] begins with them. `None` if
+    /// there are no such samples.
     pub late: Option<Compared>,
-    /// Whether the model that learned is no better than the model left alone: on the last third
-    /// its errors, taken before it learned from each sample, are larger than those of the fixed
-    /// model, or as large although it changed. Differences of the size of rounding do not count. Or
-    /// the final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err more
-    /// over all samples ([`Adapted::again`]), and either learning or they gained less than a tenth on
-    /// the last third.
+    /// Whether the model that learned is no better than the model left alone: on the last third its
+    /// errors, taken before it learned from each sample, are larger than those of the fixed model,
+    /// or as large although it changed. Differences of the size of rounding do not count. Or the
+    /// final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err more
+    /// over all samples ([`Adapted::again`]), and either learning or they gained less than a tenth
+    /// on the last third.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.
     pub again: Errors,
     /// The same over the samples of [`Adapted::late`], beside the fixed model.
     pub again_late: Option<Compared>,
-    /// The standard deviation of the measured output there: what a constant errs. A model that erred
-    /// about as much before it learned says nothing of an output that no longer follows its input;
-    /// it is [worse](Adapted::worse), too.
+    /// The standard deviation of the measured output there: what a constant errs. A model that
+    /// erred about as much before it learned says nothing of an output that no longer follows its
+    /// input; it is [worse](Adapted::worse), too.
     pub late_spread: f64,
     /// How the model has changed.
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
     pub stuck: Vec<Stuck>,
-    /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty for
-    /// the other learners. *trend* is the refit, and half as far beyond it as it moved in a cycle.
+    /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty
+    /// for the other learners. *trend* is the refit, and half as far beyond it as it moved in a
+    /// cycle.
     pub shares: Vec<(&'static str, f64)>,
     /// What [`crate::Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,

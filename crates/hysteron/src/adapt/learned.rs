@@ -15,6 +15,9 @@ use std::ops::Range;
 /// Differences below this share are rounding, because two ways to sum have different orders.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// One rejected reading in so many is a spike.
+const SELDOM: usize = 20;
+
 /// Learning that leaves more than this share of the error gains little.
 const GAINS: f64 = 0.9;
 
@@ -27,12 +30,12 @@ fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
     }
 }
 
-/// Whether learning gained much over the last third of the samples: while it lasted, with the
-/// readings that it rejected, and as the last model runs over them again. It does where a plant has
-/// changed. A hum can be followed, but not learned.
-fn is_of_use(thirds: &[Compared], again: Option<&Compared>) -> bool {
+/// Whether learning gained much over the last third of the samples: while it lasted, and as the last
+/// model runs over them again. It does where a plant has changed. A hum can be followed, but not
+/// learned.
+fn is_of_use(latest: Option<&Compared>, again: Option<&Compared>) -> bool {
     let gains = |with: &Compared| with.adapting.rmse < GAINS * with.fixed.rmse;
-    thirds.last().is_none_or(gains) && again.is_none_or(gains)
+    latest.is_none_or(gains) && again.is_none_or(gains)
 }
 
 /// Whether the axis of the `offline` model has moved.
@@ -108,7 +111,7 @@ impl Learned {
         let compare = |which: &dyn Fn(usize) -> bool| beside_fixed(&output_model, which);
         let whole = compare(&|_| true).ok_or_else(no_samples)?;
         let third = |k: usize| k * count / 3..(k + 1) * count / 3;
-        let thirds: Vec<Compared> = (0..3)
+        let thirds = (0..3)
             .map(|k| compare(&|n| third(k).contains(&n)))
             .collect::<Option<_>>()
             .unwrap_or_default();
@@ -118,6 +121,14 @@ impl Learned {
         let last_third = &alive[2 * alive.len() / 3..];
         let is_late = |n: usize| last_third.binary_search(&n).is_ok() && judges(n);
         let late = compare(&is_late);
+        // Where many readings were rejected, the others flatter what learned.
+        let rejected = last_third
+            .iter()
+            .filter(|n| outcomes[**n] == Outcome::Rejected);
+        let latest = match rejected.count() * SELDOM > last_third.len() {
+            true => compare(&|n| last_third.binary_search(&n).is_ok()),
+            false => late,
+        };
         let again_late = beside_fixed(&again, &is_late);
         let late_outputs = (0..count).filter(|n| is_late(*n)).map(|n| joined.output[n]);
         let (_, late_spread) = mean_and_deviation(&late_outputs.collect::<Vec<_>>());
@@ -140,7 +151,7 @@ impl Learned {
                 || stays && again_late.is_some_and(|again| again.is_harm())
                 || stays
                     && again.rmse > whole.fixed.rmse
-                    && !is_of_use(&thirds, again_late.as_ref()),
+                    && !is_of_use(latest.as_ref(), again_late.as_ref()),
             drift,
             stuck,
             model: last,

@@ -156,7 +156,11 @@ impl Norm {
         };
         // A number that all others share may not differ at all.
         let shared = (0..COUNT).filter(|n| !self.used.contains(n));
-        let breaks = shared.map(deviation).any(|off| off != 0.0);
+        let beyond = |n: usize| match self.of_grid[n] > 0.0 {
+            true => deviation(n).abs() > 1.0,
+            false => deviation(n) != 0.0,
+        };
+        let breaks = shared.into_iter().any(beyond);
         Strangeness {
             distance: match breaks {
                 true => f64::INFINITY,
@@ -216,7 +220,12 @@ impl Norm {
         let mut squares: Vec<f64> = points.iter().map(|point| self.square(point)).collect();
         let found = median(&mut squares);
         if found > 0.0 && !self.used.is_empty() {
+            // What the grid allows is no spread of the actuators: it is not taken back.
             let factor = (found / self.quantile(&HALF)).sqrt();
+            let factor = match self.of_grid.iter().any(|grid| *grid > 0.0) {
+                true => factor.max(1.0),
+                false => factor,
+            };
             self.factor.iter_mut().for_each(|l| *l *= factor);
         }
     }

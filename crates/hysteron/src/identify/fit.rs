@@ -360,21 +360,13 @@ impl<'a> Fit<'a> {
     /// # Errors
     /// - [`crate::Error::Recording`] for an invalid recording or a constant input.
     /// - [`crate::Error::Core`] for an invalid plane.
-    /// - [`crate::Error::Fit`] for options that contradict each other, and for creep, a lag or a
-    ///   ring without time, and a delay without samples at equal distances.
+    /// - [`crate::Error::Fit`] for options that contradict each other, for creep, a lag or a ring
+    ///   without time, a delay without samples at equal distances, and a repeat that is among the
+    ///   recordings.
     /// - [`crate::Error::Thermal`] for a thermal body without time.
-    /// - [`crate::Error::Fit`] for a repeat that is among the recordings.
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
-        let (mut model, delay) = match self.options.delay {
-            Choice::Auto if !self.options.asks_after() => self.delayed(recordings)?,
-            Choice::Auto => (self.acting(recordings)?, Delay::NONE),
-            Choice::Fixed(samples) => {
-                let delay = delay::fixed(samples, recordings)?;
-                (self.acting(&delay.of_recordings(recordings))?, delay)
-            }
-        };
         let again = |repeat: &Recording| recordings.iter().any(|one| one.has_samples_of(repeat));
         if self.repeats.iter().any(again) {
             let what =
@@ -385,6 +377,14 @@ impl<'a> Fit<'a> {
             );
             return Err(Error::Fit(what.to_owned()).remedied(remedy));
         }
+        let (mut model, delay) = match self.options.delay {
+            Choice::Auto if !self.options.asks_after() => self.delayed(recordings)?,
+            Choice::Auto => (self.acting(recordings)?, Delay::NONE),
+            Choice::Fixed(samples) => {
+                let delay = delay::fixed(samples, recordings)?;
+                (self.acting(&delay.of_recordings(recordings))?, delay)
+            }
+        };
         widen(&mut model, &delay.of_recordings(&self.repeats))?;
         Ok(model.with_delay(delay))
     }

@@ -30,7 +30,7 @@ impl Quantity {
         if spelt(expected) == spelt(found) {
             return Ok(());
         }
-        let kinds = [expected, found].map(Measures::by);
+        let kinds = [expected, found].map(|unit| Measures::by(unit).map(kind));
         let others = kinds.iter().all(Option::is_some) && kinds[0] != kinds[1];
         let what_to_do = match others {
             true => {
@@ -45,6 +45,16 @@ impl Quantity {
             "the {what} is in {expected}, `{}` of the data in {found}: {what_to_do}",
             data.name
         )))
+    }
+}
+
+/// What is converted into each other is of one kind.
+fn kind(measures: Measures) -> Measures {
+    match measures {
+        Measures::Pressure => Measures::Stress,
+        Measures::Share => Measures::Strain,
+        Measures::Mass => Measures::Force,
+        other => other,
     }
 }
 
@@ -119,6 +129,23 @@ mod tests {
         for (one, other) in other {
             let refused = one.check_unit("input", &other).unwrap_err().to_string();
             assert!(refused.contains("convert the column"), "{refused}");
+        }
+    }
+
+    #[test]
+    fn a_unit_of_another_quantity_is_not_converted() {
+        let refused = |one: &str, other: &str| {
+            let [one, other] = [one, other].map(|unit| Quantity::with_unit("x", unit));
+            one.check_unit("input", &other).unwrap_err().to_string()
+        };
+        for (one, other) in [("degC", "V"), ("mm", "N")] {
+            assert!(
+                refused(one, other).contains("another quantity"),
+                "{one} {other}"
+            );
+        }
+        for (one, other) in [("MPa", "bar"), ("%", "mm/mm"), ("N", "kg")] {
+            assert!(refused(one, other).contains("convert"), "{one} {other}");
         }
     }
 

@@ -13,9 +13,9 @@ const TIMES: usize = 2;
 const GOES_ON: f64 = 0.02;
 /// An output that rests elsewhere too, with more than this share of its samples, goes by steps.
 const RESTS: f64 = 0.02;
-/// A material comes to its end slowly, and leaves it slowly. What is cut off has steps of this share
-/// of the usual one there; of two, one may be cut itself.
-const KINK: f64 = 0.5;
+/// A material comes to its end slowly, and leaves it slowly. What is cut off has steps of this
+/// share of the usual one there; of two, one may be cut itself.
+const KINK: f64 = 0.3;
 /// Number of steps that tell where the input goes.
 const STEPS: usize = 6;
 
@@ -32,7 +32,8 @@ pub(crate) struct Clipped {
 /// same: readings do not tell.
 pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<Clipped> {
     let (low, high) = range(output);
-    let is_end = |value: f64| value == low || value == high;
+    // A force without contact, or a closed valve, is zero by itself.
+    let is_end = |value: f64| value == low && low != 0.0 || value == high;
     let equal = output.windows(2).filter(|pair| pair[0] == pair[1]);
     let rests = equal.filter(|pair| !is_end(pair[0])).count();
     if rests as f64 > RESTS * output.len() as f64 {

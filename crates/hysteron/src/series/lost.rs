@@ -24,6 +24,10 @@ const MOST: f64 = 0.5;
 const SHORTEST_HELD: usize = 3;
 /// So much of a series has to be held equally long.
 const REGULAR: f64 = 0.6;
+/// A reading that changes by less than this share of its range is a coarse one.
+const COARSE: f64 = 0.01;
+/// Steps that differ by less than this factor are alike. An answer to a set point dies away.
+const ALIKE: f64 = 1.5;
 
 /// Number of steps on either side that tell where a series goes.
 const STEPS: usize = 6;
@@ -77,8 +81,8 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
 }
 
 /// The number of samples for which an input is held from one reading to the next, if it is a slow
-/// sensor's in a fast log: while a reading is held, what follows it goes on as it does when the next
-/// one comes. `None` for set points, where it jumps with them.
+/// sensor's in a fast log: what follows it goes on as far with each sample, whether a reading is
+/// held or the next one comes. `None` for set points, which it answers, and for a coarse reading.
 pub(crate) fn held_between_readings(values: &[f64], follower: &[f64]) -> Option<usize> {
     let lengths = values.chunk_by(|a, b| a == b).map(<[f64]>::len);
     let mut sorted: Vec<usize> = lengths.collect();
@@ -91,12 +95,20 @@ pub(crate) fn held_between_readings(values: &[f64], follower: &[f64]) -> Option<
     if usual < SHORTEST_HELD || (alike as f64) < REGULAR * values.len() as f64 {
         return None;
     }
-    let pairs = values.windows(2).zip(follower.windows(2));
-    let steps = pairs.map(|(x, y)| (x[0] == x[1], (y[1] - y[0]).abs()));
-    let (inside, between): (Vec<_>, Vec<_>) = steps.partition(|(held, _)| *held);
-    let [inside, between] =
-        [inside, between].map(|steps| median_of(steps.into_iter().map(|(_, step)| step).collect()));
-    (inside > 0.0 && between < STEP * inside).then_some(usual)
+    let step = |series: &[f64], n: usize| (series[n] - series[n - 1]).abs();
+    let (low, high) = range(values);
+    let mut begins: Vec<usize> = (1..values.len())
+        .filter(|n| step(values, *n) > 0.0)
+        .collect();
+    let steps = begins.iter().map(|n| step(values, *n)).collect();
+    if median_of(steps) < COARSE * (high - low) {
+        return None;
+    }
+    begins.retain(|begin| begin + usual <= follower.len());
+    let at = |place: usize| median_of(begins.iter().map(|n| step(follower, n + place)).collect());
+    let places: Vec<f64> = (0..usual).map(at).collect();
+    let (least, most) = range(&places);
+    (least > 0.0 && most < ALIKE * least).then_some(usual)
 }
 
 /// The largest step just before and just after a run of samples.
@@ -258,22 +270,35 @@ mod tests {
             let slow: Vec<f64> = (0..clean.len()).map(held).collect();
             let found = held_between_readings(&slow, &clean);
             assert_eq!(found, (every > 2).then_some(every));
-            // Set points, which the output reaches at once, or late.
-            let mut late = slow.clone();
-            for n in 1..late.len() {
-                late[n] = late[n - 1] + 0.7 * (slow[n] - late[n - 1]);
-            }
-            for follower in [&slow, &late] {
-                assert_eq!(
-                    held_between_readings(&slow, follower),
-                    None,
-                    "every {every}"
-                );
+        }
+        // Set points, which the output reaches at once, late, slowly or after a dead time.
+        for every in [5, 10, 20] {
+            let held = |n: usize| clean[n - n % every];
+            let points: Vec<f64> = (0..clean.len()).map(held).collect();
+            for (share, dead) in [
+                (1.0, 0),
+                (0.7, 0),
+                (1.0, 1),
+                (0.3, 2),
+                (1.0 / every as f64, 0),
+            ] {
+                let mut late = points.clone();
+                for n in 1..late.len() {
+                    let wanted = points[n.saturating_sub(dead)];
+                    late[n] = late[n - 1] + share * (wanted - late[n - 1]);
+                }
+                let found = held_between_readings(&points, &late);
+                assert_eq!(found, None, "every {every}, {share}, {dead}");
             }
         }
         // A coarse reading.
         let coarse: Vec<f64> = clean.iter().map(|x| x.round()).collect();
         assert_eq!(held_between_readings(&coarse, &clean), None);
+        let ramps: Vec<f64> = (0..4000)
+            .map(|n: i32| f64::from((n % 2000 - 1000).abs()))
+            .collect();
+        let coarse: Vec<f64> = ramps.iter().map(|x| (x / 4.0).floor()).collect();
+        assert_eq!(held_between_readings(&coarse, &ramps), None);
         assert_eq!(held_between_readings(&[], &[]), None);
     }
 

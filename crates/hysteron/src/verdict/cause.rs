@@ -32,8 +32,8 @@ pub enum Cause {
         /// Number of these samples that [`crate::prepare`] would replace.
         replaced: usize,
     },
-    /// The output keeps one value at an end of its range while the input goes on: its sensor may end
-    /// there, or a stop.
+    /// The output keeps one value at an end of its range while the input goes on: its sensor may
+    /// end there, or a stop.
     Clipped {
         /// The value.
         value: f64,
@@ -318,9 +318,11 @@ pub(super) fn other_circumstances(model: &Model, recordings: &[Recording]) -> Ve
     let left = undone.filter(|_| left).map(|tau| Cause::LagLeft { tau });
     let speed = fit.other.get(SPEED).and_then(serde_json::Value::as_f64);
     let here = one_speed(recordings);
-    let is_other = |speed: &f64| here.is_none_or(|here| here.max(*speed) >= ONE * here.min(*speed));
-    let timed = recordings.iter().all(|recording| recording.time.is_some());
     let late = comes_late(model);
+    // Of few branches the speed is not known; what is late was a guess then, too.
+    let is_other =
+        |speed: &f64| here.map_or(late, |here| here.max(*speed) >= ONE * here.min(*speed));
+    let timed = recordings.iter().all(|recording| recording.time.is_some());
     let speed = speed.filter(is_other).filter(|_| timed);
     let speed = speed.map(|speed| Cause::OtherSpeed { speed, late });
     left.into_iter().chain(speed).collect()

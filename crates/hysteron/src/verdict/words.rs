@@ -366,9 +366,9 @@ impl Verdict {
                 [Setting::word("dynamics", "off")],
             ),
             Some(Cause::OtherSpeed { late: false, .. }) => Remedy::new(
-                "fit both recordings together, with the time, and look for creep ({}) or, if the \
-                 input is a drive, for a body that heats ({})",
-                [CREEP, Setting::on("thermal")],
+                "fit both recordings together, with {}, and look for what comes late: {} or, if \
+                 the input is a drive that heats, {}",
+                [Setting::any("time"), CREEP, Setting::on("thermal")],
             ),
             Some(Cause::OneSpeed { .. }) => Remedy::new(
                 "record at two speeds or more, of which one is several times the other",

@@ -58,7 +58,7 @@ impl Quantity {
             Self::Time | Self::Counter | Self::About => [0, 0, 0],
             Self::Drive => [40, 0, 0],
             Self::Temperature | Self::Voltage | Self::Field => [30, 0, 0],
-            Self::Share => [22, 0, 0],
+            Self::Share => [26, 0, 0],
             Self::Current | Self::Power | Self::Pressure => [20, 0, 0],
             Self::Response => [0, 40, 0],
             Self::Displacement | Self::Strain | Self::Angle => [0, 30, 0],

@@ -20,7 +20,7 @@ const WHOLE: &[(Quantity, &[&str])] = &[
         About,
         &[
             "std", "err", "set", "sp", "soll", "ref", "room", "raum", "model", "copied", "status",
-            "noise", "flag", "code", "rh", "fan", "bat",
+            "noise", "flag", "code", "rh", "bat",
         ],
     ),
     (Drive, &["in", "pwm", "cmd"]),
@@ -81,7 +81,7 @@ const PART: &[(Quantity, &[&str])] = &[
             "numér",
         ],
     ),
-    (About, &["humid", "feuchte", "luftf", "batter"]),
+    (About, &["humid", "feuchte", "luftfeu", "batter"]),
     (
         About,
         &[

@@ -1,7 +1,7 @@
 //! Looks for a lag that nobody asked for.
 
 use super::after::Report;
-use super::search::{Search, WORTH};
+use super::search::{Search, WORTH, step_of};
 use super::undone::After;
 use crate::error::Result;
 use crate::identify::changed::few_in_time;
@@ -68,7 +68,8 @@ pub(super) fn find(
     };
     // Within a step a lag is one with the way in which the input is held, and other steps have
     // another.
-    let is_seen = with.after.lag() >= search.step;
+    let steps = recordings.iter().map(step_of);
+    let is_seen = with.after.lag() >= steps.fold(0.0, f64::max);
     let is_worth = is_seen && with.gains(worth, &without, search.noise);
     Ok(is_worth.then_some((with.after, report)))
 }

@@ -125,6 +125,13 @@ pub(super) struct Search<'a> {
     longest: f64,
 }
 
+/// The mean sampling step; endless without a time.
+pub(super) fn step_of(recording: &Recording) -> f64 {
+    let steps = recording.len().max(2).saturating_sub(1) as f64;
+    let time = recording.time.as_ref().map(|time| range(time));
+    time.map_or(f64::INFINITY, |(start, end)| (end - start) / steps)
+}
+
 impl<'a> Search<'a> {
     pub(super) fn new(
         recordings: &'a [Recording],
@@ -135,7 +142,7 @@ impl<'a> Search<'a> {
         let (mut step, mut longest) = (f64::INFINITY, 0.0_f64);
         for recording in recordings {
             let (start, end) = range(recording.time.as_ref().ok_or_else(no_time)?);
-            step = step.min((end - start) / recording.len().max(2).saturating_sub(1) as f64);
+            step = step.min(step_of(recording));
             longest = longest.max(end - start);
         }
         if step <= 0.0 {
