@@ -1435,7 +1435,7 @@ class AdaptedComparison(_Result):
     late : Compared or None
         Over the last third, without readings that were rejected.
     worse : bool
-        Whether the model that learned ended no better than the fixed one on the last third, or errs more
+        Whether the model that learned ended no better than the fixed one on the last third, or errs 5 % more
         over the whole recording without a gain of a tenth there.
     probation : int
         Samples at the end that the model did not take over, since no later samples confirm them.

@@ -47,6 +47,11 @@ fn a_file_alone_gives_a_fit_and_commands_that_run() {
         binary.parent().unwrap().display(),
         std::env::var("PATH").unwrap()
     );
+    std::fs::copy(
+        folder.path().join("run 1.csv"),
+        folder.path().join("ANOTHER.csv"),
+    )
+    .unwrap();
     if cfg!(unix) {
         for run in runs {
             let mut shell = Command::new("sh");

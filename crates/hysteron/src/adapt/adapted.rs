@@ -43,9 +43,9 @@ pub struct Adapted {
     /// Whether the model that learned is no better than the model left alone: on the last third its
     /// errors, taken before it learned from each sample, are larger than those of the fixed model,
     /// or as large although it changed. Differences of the size of rounding do not count. Or the
-    /// final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err more
-    /// over all samples ([`Adapted::again`]), and either learning or they gained less than a tenth
-    /// on the last third.
+    /// final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err 5 %
+    /// more over all samples ([`Adapted::again`]), and either learning or they gained less than a
+    /// tenth on the last third.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.

@@ -15,6 +15,9 @@ use std::ops::Range;
 /// Differences below this share are rounding, because two ways to sum have different orders.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// So many times the error over all samples is more than chance.
+const SPOILT: f64 = 1.05;
+
 /// One rejected reading in so many is a spike.
 const SELDOM: usize = 20;
 
@@ -150,7 +153,7 @@ impl Learned {
                 || late.is_some_and(|late| late.says_nothing(late_spread))
                 || stays && again_late.is_some_and(|again| again.is_harm())
                 || stays
-                    && again.rmse > whole.fixed.rmse
+                    && again.rmse > SPOILT * whole.fixed.rmse
                     && !is_of_use(latest.as_ref(), again_late.as_ref()),
             drift,
             stuck,

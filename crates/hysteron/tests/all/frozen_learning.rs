@@ -113,7 +113,7 @@ fn what_a_hum_teaches_is_no_gain() {
         let last = adapted.model.simulate(&recording.input).unwrap();
         let harmed = Errors::between(&recording.output, &last, |n| n < half).unwrap();
         assert!(
-            adapted.worse || harmed.rmse < 0.02 * 11.3,
+            adapted.worse || harmed.rmse < 0.05 * 11.3,
             "seed {seed}: {harmed:?}, {size} {pace}"
         );
     }
