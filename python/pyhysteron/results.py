@@ -1435,14 +1435,16 @@ class AdaptedComparison(_Result):
     late : Compared or None
         Over the last third, without readings that were rejected.
     worse : bool
-        Whether the model that learned ended no better than the fixed one on the last third, or errs 5 % more
-        over the whole recording without a gain of a tenth there.
+        Whether the model that learned ended no better than the fixed one on the last third, or errs 1 %
+        of its range more on the first third without a gain of a tenth on the last.
     probation : int
         Samples at the end that the model did not take over, since no later samples confirm them.
     again : Errors
         Of the last weights, over the whole recording.
     again_late : Compared or None
         The same over the samples of `late`, beside the fixed model.
+    again_first : Compared or None
+        The same over the first third of the samples.
     late_spread : float
         The standard deviation of the measured output there: what a constant errs.
     counts : OutcomeCounts
@@ -1460,6 +1462,7 @@ class AdaptedComparison(_Result):
     probation: int
     again: Errors
     again_late: Compared | None
+    again_first: Compared | None
     late_spread: float
     counts: OutcomeCounts
     drift: Drift

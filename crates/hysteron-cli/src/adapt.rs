@@ -129,14 +129,15 @@ fn worse(adapted: &Adapted) -> String {
         ),
         _ => "no reading of the last third can be compared".into(),
     };
-    let whole = adapted.whole.fixed;
-    let all = format!(
-        "over all rows it errs by {} as it is in the end, the model left alone by {}",
-        error(adapted.again),
-        error(whole)
-    );
+    let first = adapted.again_first.map_or(String::new(), |first| {
+        format!(
+            "; over the first third it errs by {} as it is in the end, the model left alone by {}",
+            error(first.adapting),
+            error(first.fixed)
+        )
+    });
     format!(
-        "it ended no better: {found}; {all}: see the column `outcome` of --table, try another \
+        "it ended no better: {found}{first}: see the column `outcome` of --table, try another \
          --method, or keep the model as it is"
     )
 }
@@ -153,6 +154,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "probation": adapted.probation,
         "again": adapted.again,
         "again_late": adapted.again_late,
+        "again_first": adapted.again_first,
         "late_spread": adapted.late_spread,
         "counts": adapted.counts,
         "shares": adapted.shares.iter().copied().collect::<std::collections::BTreeMap<_, _>>(),

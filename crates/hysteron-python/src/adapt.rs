@@ -150,6 +150,7 @@ pub(crate) fn adapt<'py>(
     comparison.set_item("probation", adapted.probation)?;
     comparison.set_item("again", to_python(py, &adapted.again)?)?;
     comparison.set_item("again_late", to_python(py, &adapted.again_late)?)?;
+    comparison.set_item("again_first", to_python(py, &adapted.again_first)?)?;
     comparison.set_item("late_spread", adapted.late_spread)?;
     comparison.set_item("counts", to_python(py, &adapted.counts)?)?;
     comparison.set_item("drift", to_python(py, &adapted.drift)?)?;

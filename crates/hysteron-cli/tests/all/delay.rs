@@ -165,7 +165,7 @@ fn a_fit_finds_what_a_play_does_late_and_tells_it() {
     // Adaptation keeps it.
     done(
         folder,
-        "adapt found.json rec.csv --input x --output output_model --time t --force -o adapted.json",
+        "adapt found.json rec.csv --input x --output output_model --time t -o adapted.json",
     );
     assert_eq!(read("adapted.json")["delay"], found["delay"]);
     let refused = run(folder, &format!("{fit} --delay 1001 -o no.json"));

@@ -43,15 +43,17 @@ pub struct Adapted {
     /// Whether the model that learned is no better than the model left alone: on the last third its
     /// errors, taken before it learned from each sample, are larger than those of the fixed model,
     /// or as large although it changed. Differences of the size of rounding do not count. Or the
-    /// final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err 5 %
-    /// more over all samples ([`Adapted::again`]), and either learning or they gained less than a
-    /// tenth on the last third.
+    /// final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err
+    /// more on the first third, by 1 % of the range ([`Adapted::again_first`]), and either learning or
+    /// they gained less than a tenth on the last.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.
     pub again: Errors,
     /// The same over the samples of [`Adapted::late`], beside the fixed model.
     pub again_late: Option<Compared>,
+    /// The same over the first third of the samples.
+    pub again_first: Option<Compared>,
     /// The standard deviation of the measured output there: what a constant errs. A model that
     /// erred about as much before it learned says nothing of an output that no longer follows its
     /// input; it is [worse](Adapted::worse), too.

@@ -15,8 +15,9 @@ use std::ops::Range;
 /// Differences below this share are rounding, because two ways to sum have different orders.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// So many times the error over all samples is more than chance.
-const SPOILT: f64 = 1.05;
+/// A model that errs by this share of its range more than it did where learning began is spoilt, if
+/// that is all that it learned.
+const SPOILT: f64 = 0.01;
 
 /// One rejected reading in so many is a spike.
 const SELDOM: usize = 20;
@@ -133,6 +134,7 @@ impl Learned {
             false => late,
         };
         let again_late = beside_fixed(&again, &is_late);
+        let again_first = beside_fixed(&again, &|n| third(0).contains(&n));
         let late_outputs = (0..count).filter(|n| is_late(*n)).map(|n| joined.output[n]);
         let (_, late_spread) = mean_and_deviation(&late_outputs.collect::<Vec<_>>());
         let again = Errors::between(&joined.output, &again, |_| true).ok_or_else(no_samples)?;
@@ -153,7 +155,7 @@ impl Learned {
                 || late.is_some_and(|late| late.says_nothing(late_spread))
                 || stays && again_late.is_some_and(|again| again.is_harm())
                 || stays
-                    && again.rmse > SPOILT * whole.fixed.rmse
+                    && again_first.is_some_and(|first| first.loss(offline.output_range()) > SPOILT)
                     && !is_of_use(latest.as_ref(), again_late.as_ref()),
             drift,
             stuck,
@@ -167,6 +169,7 @@ impl Learned {
             late,
             again,
             again_late,
+            again_first,
             late_spread,
             shares: self.shares,
             shift: self.shift,
