@@ -325,6 +325,10 @@ fn columns_are_known_by_name_and_unit() {
             ["Spannung [V]", "Weg [mm]", "X_Value", ""],
         ),
         (
+            "time [s],humidity [%],temperature [degC],displacement [um]",
+            ["temperature [degC]", "displacement [um]", "time [s]", ""],
+        ),
+        (
             "Zeit,T [°C],Dehnung [%],Spannung [MPa]",
             ["T [°C]", "Dehnung [%]", "Zeit", "Spannung [MPa]"],
         ),

@@ -53,6 +53,19 @@ fn every_file_of_a_fit_is_known_again() {
     }
 }
 
+/// What was fitted says nothing of another session, whatever file it comes from.
+#[test]
+fn a_repeat_of_what_was_fitted_is_refused() {
+    let one = recording(0.0, "a");
+    let copy = Recording {
+        source: None,
+        ..one.clone()
+    };
+    let refused = Fit::new().levels(6).repeats(vec![copy]).run(&one);
+    let said = refused.unwrap_err().to_string();
+    assert!(said.contains("among those fitted"), "{said}");
+}
+
 /// Without a band there is nothing that repeats could have widened.
 #[test]
 fn repeats_count_only_where_there_is_a_band() {
