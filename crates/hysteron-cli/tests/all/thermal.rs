@@ -58,6 +58,14 @@ fn a_body_is_fitted_simulated_and_judged() {
     );
     assert!(done.status.success(), "{}", text(&done.stderr));
     let judged: Value = serde_json::from_slice(&done.stdout).unwrap();
+    // The page shows the temperature, and says the same of the drive as the terminal.
+    let page = fs::read_to_string(folder.path().join("report/index.html")).unwrap();
+    assert!(page.contains("temperature of the body"));
+    let causes = judged["verdict"]["causes"].as_array().unwrap();
+    for cause in causes {
+        let said = cause[1].as_str().unwrap();
+        assert!(page.contains(said), "{said}");
+    }
     let rmse = |value: &Value| value["rmse"].as_f64().unwrap();
     // Both run the same body and weights over the same rows, in another order of additions.
     assert!((rmse(&judged["forward"]) / rmse(&said["fit"]) - 1.0).abs() < 1e-9);
