@@ -25,16 +25,14 @@ fn behind_body<'a>(
 
 /// What figures show as the input: the temperature of the body, where there is one. Without a
 /// thermometer it is in units of the drive that holds it.
-fn behind_body_is(model: &Model, input: &Labelled) -> Labelled {
-    match model.thermal {
-        None => input.clone(),
-        Some(body) if body.gain == 1.0 && body.ambient == 0.0 => {
-            input.renamed("temperature of the body")
-        }
-        Some(_) => Labelled {
-            name: "temperature of the body".into(),
-            unit: None,
-        },
+fn shown_input(model: &Model, input: Labelled) -> Labelled {
+    let Some(body) = model.thermal else {
+        return input;
+    };
+    let in_drive = body.gain == 1.0 && body.ambient == 0.0;
+    Labelled {
+        name: "temperature of the body".into(),
+        unit: input.unit.filter(|_| in_drive),
     }
 }
 
@@ -99,7 +97,7 @@ impl<'a> View<'a> {
         let (time, time_label) = clock(&recording);
         let time = time.into_owned().into();
         Ok(Self {
-            input: behind_body_is(model, &input),
+            input: shown_input(model, input),
             output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             recording,
             begins,

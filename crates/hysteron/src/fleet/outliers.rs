@@ -220,7 +220,8 @@ impl Norm {
         let mut squares: Vec<f64> = points.iter().map(|point| self.square(point)).collect();
         let found = median(&mut squares);
         if found > 0.0 && !self.used.is_empty() {
-            // What the grid allows is no spread of the actuators: it is not taken back.
+            // Where the grid's part is the larger one, the points are nearer than that, and scaling
+            // would take it away again.
             let factor = (found / self.quantile(&HALF)).sqrt();
             let factor = match self.of_grid.iter().any(|grid| *grid > 0.0) {
                 true => factor.max(1.0),

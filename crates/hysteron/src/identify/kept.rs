@@ -5,7 +5,7 @@ use crate::identify::changed::on_grid;
 use crate::identify::history::{self, find_start};
 use crate::identify::options::FitOptions;
 use crate::identify::rest::after;
-use crate::model::{Model, Start};
+use crate::model::{FitSummary, Model, Start};
 use crate::recording::{Recording, one_speed};
 use crate::series::{Errors, different_branches};
 use serde_json::json;
@@ -92,8 +92,13 @@ pub(super) fn tell_different(model: &mut Model, recordings: &[Recording]) {
 
 /// The entries of a fit's record with the speed of the input, if all was recorded at one, and with
 /// the lag of its sensor that was undone.
-pub(crate) const SPEED: &str = "one_speed";
+const SPEED: &str = "one_speed";
 pub(crate) const UNDONE_LAG: &str = "sensor_lag";
+
+/// The speed of the input, if all that was fitted had one.
+pub(crate) fn speed_fitted(fit: &FitSummary) -> Option<f64> {
+    fit.other.get(SPEED)?.as_f64()
+}
 
 /// Writes how the recordings came about into the record of the fit, as far as the verdict on others
 /// asks for it.

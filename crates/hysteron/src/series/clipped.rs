@@ -1,5 +1,6 @@
 //! Finds an output that stands at an end of what its sensor reads.
 
+use crate::series::lost::equal_runs;
 use crate::series::noise::median_of;
 use crate::series::spread::range;
 use std::ops::Range;
@@ -48,16 +49,11 @@ pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<Clipped> {
         let beyond = input[run.clone()].iter().map(|x| (x - at) * way.signum());
         way != 0.0 && beyond.fold(0.0, f64::max) >= GOES_ON * (most - least)
     };
-    let mut end = 0;
-    let runs = output.chunk_by(|a, b| a == b).map(|run| {
-        end += run.len();
-        end - run.len()..end
-    });
     let is_cut = |run: &Range<usize>| {
         let stays = run.len() >= SHORTEST && is_end(output[run.start]);
         stays && goes_on(run) && kink(output, run) >= KINK * usual
     };
-    let runs: Vec<Range<usize>> = runs.filter(is_cut).collect();
+    let runs: Vec<Range<usize>> = equal_runs(output).filter(is_cut).collect();
     let at = |value: f64| {
         let runs = runs.iter().filter(|run| output[run.start] == value);
         let samples = runs.clone().map(Range::len).sum();

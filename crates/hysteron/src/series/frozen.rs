@@ -1,6 +1,6 @@
 //! Finds a channel that stands still while the other one moves.
 
-use crate::series::lost::{half_a_branch, held};
+use crate::series::lost::{equal_runs, half_a_branch, held};
 use crate::series::spread::{range, usual_span};
 use std::ops::Range;
 
@@ -30,12 +30,9 @@ const ROUGH: f64 = 0.25;
 /// Frozen are readings of a sensor that lost its contact or of a logger that goes on with the last
 /// value. A series that moves in steps is not frozen between them.
 pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
-    let mut end = 0;
-    let runs = values.chunk_by(|a, b| a == b).map(|run| {
-        end += run.len();
-        end - run.len()..end
-    });
-    let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
+    let long: Vec<Range<usize>> = equal_runs(values)
+        .filter(|run| run.len() >= SHORTEST)
+        .collect();
     let span = usual_span(other);
     // A drive may rest at the end of its range before an experiment, while what it moves settles.
     let (low, high) = range(values);

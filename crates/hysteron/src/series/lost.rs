@@ -35,15 +35,21 @@ const STEPS: usize = 6;
 /// Rounds of the search: what stands beside a wrong reading is seen only when that one is gone.
 const ROUNDS: usize = 4;
 
+/// The samples over which a series keeps exactly one value, one run after the other.
+pub(crate) fn equal_runs(values: &[f64]) -> impl Iterator<Item = Range<usize>> {
+    let mut end = 0;
+    values.chunk_by(|a, b| a == b).map(move |run| {
+        end += run.len();
+        end - run.len()..end
+    })
+}
+
 /// The samples over which `values` keeps exactly one value and then goes on elsewhere, or while
 /// the series that follows it, if any, moves. None in a series that often rests.
 pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>> {
-    let mut end = 0;
-    let runs = values.chunk_by(|a, b| a == b).map(|run| {
-        end += run.len();
-        end - run.len()..end
-    });
-    let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
+    let long: Vec<Range<usize>> = equal_runs(values)
+        .filter(|run| run.len() >= SHORTEST)
+        .collect();
     if long.is_empty() {
         return long;
     }
@@ -84,8 +90,7 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
 /// sensor's in a fast log: what follows it goes on as far with each sample, whether a reading is
 /// held or the next one comes. `None` for set points, which it answers, and for a coarse reading.
 pub(crate) fn held_between_readings(values: &[f64], follower: &[f64]) -> Option<usize> {
-    let lengths = values.chunk_by(|a, b| a == b).map(<[f64]>::len);
-    let mut sorted: Vec<usize> = lengths.collect();
+    let mut sorted: Vec<usize> = equal_runs(values).map(|run| run.len()).collect();
     sorted.sort_unstable();
     let usual = *sorted.get(sorted.len() / 2)?;
     let alike = sorted

@@ -5,10 +5,10 @@ use super::parts::{ErrorPart, PartKind, parts_after};
 use super::tested::BEYOND;
 use crate::evaluate::Evaluation;
 use crate::hold_out::HeldOut;
-use crate::identify::kept::{DIFFERENT, SPEED, UNDONE_LAG};
+use crate::identify::kept::{DIFFERENT, UNDONE_LAG, speed_fitted};
 use crate::model::{FitSummary, Model};
 use crate::recording::{ONE, Recording, one_speed};
-use crate::series::clipped::{Clipped, clipped};
+use crate::series::clipped::clipped;
 use crate::series::lost::held_between_readings;
 use crate::series::{different_branches, usual_tolerance};
 
@@ -284,15 +284,10 @@ pub(super) fn cut_off(recordings: &[Recording]) -> Option<Cause> {
     let found = recordings.iter();
     let found = found.filter_map(|recording| clipped(&recording.input, &recording.output));
     let most = found.max_by_key(|found| found.samples)?;
-    let Clipped {
-        value,
-        times,
-        samples,
-    } = most;
     Some(Cause::Clipped {
-        value,
-        times,
-        samples,
+        value: most.value,
+        times: most.times,
+        samples: most.samples,
     })
 }
 
@@ -316,14 +311,13 @@ pub(super) fn other_circumstances(model: &Model, recordings: &[Recording]) -> Ve
         .iter()
         .all(|recording| recording.undone.is_none());
     let left = undone.filter(|_| left).map(|tau| Cause::LagLeft { tau });
-    let speed = fit.other.get(SPEED).and_then(serde_json::Value::as_f64);
     let here = one_speed(recordings);
     let late = comes_late(model);
     // Of few branches the speed is not known; what is late was a guess then, too.
     let is_other =
         |speed: &f64| here.map_or(late, |here| here.max(*speed) >= ONE * here.min(*speed));
     let timed = recordings.iter().all(|recording| recording.time.is_some());
-    let speed = speed.filter(is_other).filter(|_| timed);
+    let speed = speed_fitted(fit).filter(is_other).filter(|_| timed);
     let speed = speed.map(|speed| Cause::OtherSpeed { speed, late });
     left.into_iter().chain(speed).collect()
 }

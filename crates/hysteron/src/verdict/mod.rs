@@ -26,7 +26,7 @@ use crate::error::Result;
 use crate::evaluate::{Evaluation, evaluate_from};
 use crate::forward::{Forward, forward};
 use crate::hold_out::held_out;
-use crate::identify::kept::SPEED;
+use crate::identify::kept::speed_fitted;
 use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Quantity, Recording, no_recordings, one_speed};
 use crate::rivals::{Rival, RivalKind, SMALL};
@@ -269,10 +269,9 @@ impl Verdict {
         };
         verdict.noise = noise_of(recordings, output);
         // A part of what was fitted may have one speed where all of it has several.
-        let at_one = fit.and_then(|fit| fit.other.get(SPEED)?.as_f64());
-        verdict.one_speed = match was_fitted && fit.is_some() {
-            true => at_one,
-            false => one_speed(recordings),
+        verdict.one_speed = match fit.filter(|_| was_fitted) {
+            Some(fit) => speed_fitted(fit),
+            None => one_speed(recordings),
         };
         verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
         verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());

@@ -66,8 +66,8 @@ pub(super) fn find(
         true => LONG_WORTH,
         false => WORTH,
     };
-    // Within a step a lag is one with the way in which the input is held, and other steps have
-    // another.
+    // A lag shorter than a step cannot be told from how the input is held between samples. It would
+    // be wrong at any other step.
     let steps = recordings.iter().map(step_of);
     let is_seen = with.after.lag() >= steps.fold(0.0, f64::max);
     let is_worth = is_seen && with.gains(worth, &without, search.noise);
