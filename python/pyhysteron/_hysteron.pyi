@@ -611,6 +611,12 @@ class Model:
         inverse: bool = False,
         fmi: Literal[2, 3] = 2,
         name: str | None = None,
+        controller: bool = False,
+        gains: Pid | None = None,
+        gate: float | None = None,
+        filter_s: float | None = None,
+        dt: float | None = None,
+        drive_range: _Range | None = None,
     ) -> FmuExport: ...
     @classmethod
     def from_json(cls, text: str) -> Model: ...
@@ -881,7 +887,7 @@ def adapt(
     *,
     time: _Times | None = None,
     method: Literal["auto", "fixed", "refit", "drift", "least-squares", "increments", "load"] = "auto",
-    start: Literal["off", "on", "unknown"] = "off",
+    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
     window: str | None = None,
     every: int | None = None,
     ridge: float | None = None,

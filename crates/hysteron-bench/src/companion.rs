@@ -1,8 +1,11 @@
 //! The file beside a log: by it a later run knows the log, and goes on where it ended.
 
+use crate::config::{Config, Mode};
 use crate::error::{Result, of_file};
+use hysteron::Model;
 use hysteron_files::{AtomicFile, Own};
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -29,10 +32,39 @@ pub(crate) struct Companion {
     pub(crate) bytes: Option<u64>,
     /// How the run ended; `None` while it runs.
     pub(crate) end: Option<String>,
+    /// What the drive followed: mode, controller, and the digest of its model; `None` in files of
+    /// earlier versions.
+    #[serde(default)]
+    pub(crate) follows: Option<Follows>,
     /// What learned, and the model as it was at the end; `None` where nothing learned.
     pub(crate) learner: Option<String>,
     /// The learned model, as a model file has it.
     pub(crate) model: Option<serde_json::Value>,
+}
+
+/// What the drive of a run follows. A log of two of them would be a run of neither.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Follows {
+    pub(crate) mode: Mode,
+    pub(crate) controller: Option<String>,
+    /// SHA-256 of the model as it was given.
+    pub(crate) model: Option<String>,
+}
+
+impl Follows {
+    pub(crate) fn of(config: &Config, model: Option<&Model>) -> Self {
+        let controller = config.controller.as_ref();
+        let controller = controller.filter(|_| config.mode == Mode::Control);
+        let digest = |model: &Model| {
+            let digest = Sha256::digest(model.to_json());
+            digest.iter().map(|byte| format!("{byte:02x}")).collect()
+        };
+        Self {
+            mode: config.mode,
+            controller: controller.map(|options| options.kind.name().into()),
+            model: model.filter(|_| controller.is_some()).map(digest),
+        }
+    }
 }
 
 /// The path of the file beside a log.
@@ -54,9 +86,25 @@ impl Companion {
             last: (0, 0.0),
             bytes: None,
             end: None,
+            follows: None,
             learner: None,
             model: None,
         }
+    }
+
+    /// What another run has that is not of this log.
+    pub(crate) fn differs(&self, other: &Self) -> Option<&'static str> {
+        if (&self.device, &self.columns) != (&other.device, &other.columns) {
+            return Some("device");
+        }
+        let (own, other) = (self.follows.as_ref()?, other.follows.as_ref()?);
+        [
+            (own.mode != other.mode, "mode"),
+            (own.controller != other.controller, "controller"),
+            (own.model != other.model, "model"),
+        ]
+        .into_iter()
+        .find_map(|(differs, what)| differs.then_some(what))
     }
 
     /// Whether the file at `log` is one of ours that nobody has changed.

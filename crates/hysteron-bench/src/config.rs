@@ -5,12 +5,12 @@ use hysteron::AdaptOptions;
 use hysteron::control::Gains;
 use hysteron_sim::track::{Kind, line_at};
 use serde::de::value::MapAccessDeserializer;
-use serde::{Deserialize, Deserializer, de};
+use serde::{Deserialize, Deserializer, Serialize, de};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// What a run does with the drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
     /// Plays a profile and logs.

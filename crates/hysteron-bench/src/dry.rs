@@ -1,5 +1,6 @@
 //! What a run would do.
 
+use crate::companion::{Companion, Follows};
 use crate::config::{Config, Mode};
 use crate::error::Result;
 use crate::plan::Sources;
@@ -15,9 +16,20 @@ use crate::{device, log};
 pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
     let path = log_path(config, options)?;
     let sources = Sources::read(config)?;
-    if !options.resume {
-        log::claim(&path, options.force)?;
-    }
+    let resumed = match options.resume {
+        false => log::claim(&path, options.force).map(|()| None)?,
+        true => {
+            log::resumable(&path)?;
+            let before = Companion::of(&path)?;
+            let mut own = before.clone();
+            own.follows = Some(Follows::of(config, sources.model.as_ref()));
+            if let Some(what) = before.differs(&own) {
+                let what = format!("the log is one of another {what}: name another log");
+                return Err(config.refused("log", what));
+            }
+            Some(before)
+        }
+    };
     let or = |value: Option<String>, other: &str| value.unwrap_or_else(|| other.to_owned());
     let range = |range: Option<(f64, f64)>| range.map(|(low, high)| format!("{low} to {high}"));
     let seconds = |value: Option<f64>| value.map(|value| format!("{value} s"));
@@ -31,6 +43,14 @@ pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
         format!("device    {}", device::name(config)),
         format!("log       {}", path.display()),
     ];
+    if let Some(before) = resumed {
+        lines.push(match (before.end, before.last) {
+            (Some(end), (number, time)) => {
+                format!("resumes   behind sample {number}, at {time} s ({end})")
+            }
+            (None, _) => "resumes   behind its last whole row; that run was killed".into(),
+        });
+    }
     if let Some(course) = &sources.course {
         let (low, high) = course.range();
         lines.push(format!(

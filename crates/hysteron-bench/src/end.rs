@@ -20,6 +20,8 @@ pub enum End {
     Unmoved(Unmoved),
     /// The output was beyond its limits.
     Limit(f64),
+    /// The output stayed far beyond what the model reaches, and far from what was wanted.
+    Astray(f64),
     /// The device said that it has ended, and why.
     Device(String),
     /// The line to the device is gone, and how.
@@ -39,7 +41,7 @@ impl End {
             Self::Failed(_) => 1,
             Self::Lost(_) => 3,
             Self::Stuck(_) | Self::Unmoved(_) => 4,
-            Self::Limit(_) => 5,
+            Self::Limit(_) | Self::Astray(_) => 5,
             Self::Device(_) => 6,
             Self::Closed(_) => 7,
             Self::Log(_) => 8,
@@ -55,7 +57,7 @@ impl End {
             Self::Stopped => "stopped",
             Self::Lost(_) => "lost",
             Self::Stuck(_) | Self::Unmoved(_) => "stuck",
-            Self::Limit(_) => "limit",
+            Self::Limit(_) | Self::Astray(_) => "limit",
             Self::Device(_) => "device",
             Self::Closed(_) => "closed",
             Self::Log(_) => "log",
@@ -91,6 +93,12 @@ impl fmt::Display for End {
             Self::Limit(output) => {
                 write!(f, "the output was {output}, beyond limits.output")
             }
+            Self::Astray(output) => write!(
+                f,
+                "the output is {output}, far beyond what the model reaches and from what is wanted: \
+                 the loop is unstable (take a smaller gain), drive or sensor is turned round, or the \
+                 model is another's; where such outputs are right, give limits.output"
+            ),
             Self::Device(why) if why == "limit" => {
                 write!(
                     f,

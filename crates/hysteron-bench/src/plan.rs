@@ -1,5 +1,6 @@
 //! What a run does with the device that answered: limits, controller, learner.
 
+use crate::companion::Follows;
 use crate::config::{Config, ControllerOptions, Mode, Safety, Tuning};
 use crate::error::{Error, Result};
 use crate::learner::Beside;
@@ -17,6 +18,15 @@ const MOST_AHEAD: usize = 10_000;
 
 /// Share of the output's way that is never taken for a spike.
 const SMALL: f64 = 0.02;
+/// Nor are so many times the error of the fit, up to this share: a step of a coarse sensor is 3.5
+/// times the error that its rounding makes.
+const ERRORS: f64 = 4.0;
+const COARSE: f64 = 0.1;
+
+/// An output that is further beyond what the model reaches than this share of it is no model's.
+const ASTRAY: f64 = 0.5;
+/// A reference may leave what the model reaches by this share of it: the model knows that no better.
+const HARDLY: f64 = 0.01;
 
 /// What is read before the device is asked anything.
 #[derive(Debug, Clone)]
@@ -63,6 +73,8 @@ pub(crate) struct Plan {
     /// Lowest and highest drive, and output.
     pub(crate) drives: (f64, f64),
     pub(crate) outputs: Option<(f64, f64)>,
+    /// The outputs that the model reaches, with room about them, where no limits are given.
+    pub(crate) reach: Option<(f64, f64)>,
     pub(crate) lost_s: f64,
     pub(crate) stuck_s: f64,
     pub(crate) end_s: Option<f64>,
@@ -76,6 +88,8 @@ pub(crate) struct Plan {
     /// Name of the learner.
     pub(crate) learner: Option<Learner>,
     pub(crate) tuned: Option<Tuned>,
+    /// What the drive follows.
+    pub(crate) follows: Option<Follows>,
     /// What somebody should know before it begins.
     pub(crate) remarks: Vec<String>,
 }
@@ -130,6 +144,10 @@ impl Plan {
             mode: config.mode,
             drives,
             outputs: config.limits.output,
+            reach: match (config.mode, config.limits.output, &sources.model) {
+                (Mode::Control, None, Some(model)) => Some(about(model, ASTRAY)),
+                _ => None,
+            },
             lost_s,
             stuck_s: stuck_s.unwrap_or(usual_stuck_s),
             end_s: config.duration_s.or(course_end),
@@ -140,6 +158,7 @@ impl Plan {
             beside: made.beside,
             learner: made.learner,
             tuned: made.tuned,
+            follows: Some(Follows::of(config, sources.model.as_ref())),
             remarks: Vec::new(),
             header,
         };
@@ -169,6 +188,7 @@ impl Plan {
     fn remarked(&self, model: Option<&Model>) -> Vec<String> {
         let beyond = |what: &str, (low, high): (f64, f64), of: &str, (least, most): (f64, f64)| {
             (low < least || high > most).then(|| {
+                let [low, high, least, most] = [low, high, least, most].map(short);
                 format!("the {what} goes from {low} to {high}, beyond {of}, {least} to {most}")
             })
         };
@@ -185,13 +205,11 @@ impl Plan {
             beyond("reference", range, "limits.output", outputs)
                 .map(|text| text + ": the run ends there")
         });
-        let unreachable = reference.zip(model).and_then(|(range, model)| {
-            beyond(
-                "reference",
-                range,
-                "what the model reaches",
-                model.output_range(),
-            )
+        let unreachable = reference.zip(model).and_then(|((low, high), model)| {
+            let (least, most) = about(model, HARDLY);
+            let reaches = about(model, 0.0);
+            (low < least || high > most)
+                .then(|| beyond("reference", (low, high), "what the model reaches", reaches))?
         });
         let unwatched = self.header.watchdog.is_none().then(|| {
             "the device has no watchdog: if this program is killed, its drive stays as it is".into()
@@ -200,7 +218,14 @@ impl Plan {
         let safe = self.header.safe;
         let narrow = (!(low..=high).contains(&safe))
             .then(|| format!("the safe drive {safe} is outside limits.drive, {low} to {high}"));
-        let all = [clipped, outside, unreachable, unwatched, narrow];
+        // A model without time answers at once, however late the plant is.
+        let unknown = model.filter(|model| self.tuned.is_some() && !model.is_timed());
+        let unknown = unknown.map(|_| {
+            "the model does not say how fast the plant is: the gains suppose that it answers \
+             within ten samples; give smaller ones if it rings"
+                .into()
+        });
+        let all = [clipped, outside, unreachable, unwatched, narrow, unknown];
         all.into_iter().flatten().collect()
     }
 }
@@ -245,7 +270,7 @@ impl Made {
                     .unwrap_or_else(|| 1 + late(sources.model.as_ref(), header.dt)),
             ),
             slew: config.limits.slew,
-            gate: Some(SMALL * scale(sources)),
+            gate: Some(gate(sources)),
             ..Scheme::new(header.dt, drives)
         };
         scheme.pid = match (options.gains().filter(|_| kind.has_pid()), &sources.model) {
@@ -303,9 +328,29 @@ fn late(model: Option<&Model>, dt: f64) -> usize {
     model.map_or(0, |model| model.delay().at(Some(dt)))
 }
 
+/// The outputs that a model reaches, from the lowest on, with a share of their range about them.
+fn about(model: &Model, share: f64) -> (f64, f64) {
+    let (off, on) = model.output_range();
+    let room = share * (on - off).abs();
+    (off.min(on) - room, off.max(on) + room)
+}
+
+/// With four digits: for people.
+fn short(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// What is never taken for a spike, in the output's unit.
+fn gate(sources: &Sources) -> f64 {
+    let scale = scale(sources);
+    let fit = sources.model.as_ref().and_then(|model| model.fit.as_ref());
+    let error = fit.map_or(0.0, |fit| fit.rmse);
+    (ERRORS * error).min(COARSE * scale).max(SMALL * scale)
+}
+
 /// How far the output goes: through the reference, or the model's range where that is wider.
 fn scale(sources: &Sources) -> f64 {
-    let width = |(low, high): (f64, f64)| high - low;
+    let width = |(low, high): (f64, f64)| (high - low).abs();
     let course = sources.course.as_ref().map(Course::range);
     let model = sources.model.as_ref().map(Model::output_range);
     let wide = course

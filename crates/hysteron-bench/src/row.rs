@@ -64,13 +64,21 @@ impl Answer {
         let others = readings().filter(|(column, _)| column.name != OUTPUT);
         row.extend(others.map(|(_, value)| number(*value)));
         row.push(or_empty(self.expected));
-        row.push(word.map_or_else(|| self.words(output), str::to_owned));
+        row.push(self.words(output, word));
         row.push(learner.to_owned());
         row.push(at.number.to_string());
         row
     }
 
-    fn words(&self, output: f64) -> String {
+    /// What was odd. A `word` in its place hides no reading that is none: a fit leaves that out.
+    fn words(&self, output: f64, word: Option<&str>) -> String {
+        let none = |word: &str| match output.is_nan() {
+            true => format!("missing+{word}"),
+            false => word.to_owned(),
+        };
+        if let Some(word) = word {
+            return none(word);
+        }
         let words = [
             (output.is_nan(), "missing"),
             (self.status.rejected && output.is_finite(), "rejected"),

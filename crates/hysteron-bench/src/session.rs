@@ -24,6 +24,10 @@ const FIRST: Duration = Duration::from_secs(5);
 const LOOK: Duration = Duration::from_millis(20);
 /// How long a device may take to end after it was told to.
 const LEAVE: Duration = Duration::from_secs(1);
+/// Characters of a bad line that are shown.
+const SHOWN: usize = 60;
+/// A run is over where so little of it is left, s.
+const EARLY: f64 = 1e-9;
 /// Drives that the device may name later.
 const REMEMBERED: usize = 4096;
 
@@ -106,12 +110,16 @@ struct Session {
     drive: f64,
     /// Readings beyond the limits in a row.
     beyond: u32,
+    /// For how long readings were astray, s, less the time that they were not.
+    astray_s: f64,
     jitter: Jitter,
     /// Squared errors of the readings that were believed, and how many these are.
     squares: f64,
     compared: u64,
     learned: u64,
     counts: Counts,
+    /// The last line that meant nothing.
+    bad_line: Option<String>,
 }
 
 #[derive(Default)]
@@ -120,6 +128,8 @@ struct Counts {
     lost: u64,
     old: u64,
     bad: u64,
+    missing: u64,
+    rejected: u64,
 }
 
 impl Session {
@@ -132,16 +142,23 @@ impl Session {
         let columns = columns(&plan.header);
         let safe = plan.header.safe;
         let mut companion = Companion::new(&plan.header.name, columns.clone());
+        companion.follows = plan.follows.clone();
         let mut logged = None;
         let log = match before {
             None => Log::create(path, &columns)?,
             Some(before) => {
-                if (&before.device, &before.columns) != (&companion.device, &companion.columns) {
-                    let what = "the log is one of another device: name another log";
+                if let Some(what) = before.differs(&companion) {
+                    let what = format!("the log is one of another {what}: name another log");
                     return Err(config.refused("log", what));
                 }
                 let log = Log::reopen(path)?;
                 logged = replay(&mut plan, log.rows())?;
+                let over = plan.end_s.zip(logged.as_ref());
+                let over = over.filter(|(end, last)| last.time - before.origin_s >= end - EARLY);
+                if let Some((end, _)) = over {
+                    let what = format!("nothing is left to run: the log goes to the end, {end} s");
+                    return Err(config.refused("log", what));
+                }
                 companion = before;
                 log
             }
@@ -160,11 +177,13 @@ impl Session {
             sent: VecDeque::new(),
             drive: safe,
             beyond: 0,
+            astray_s: 0.0,
             jitter: Jitter::default(),
             squares: 0.0,
             compared: 0,
             learned: 0,
             counts: Counts::default(),
+            bad_line: None,
             plan,
         })
     }
@@ -216,7 +235,11 @@ impl Session {
                         }
                     }
                 }
-                _ => self.counts.bad += 1,
+                _ => {
+                    self.counts.bad += 1;
+                    let line = String::from_utf8_lossy(&bytes);
+                    self.bad_line = Some(line.trim_end().chars().take(SHOWN).collect());
+                }
             }
             // A flood of what is no sample is silence, too.
             if heard.elapsed() >= patience.max(2 * LOOK) && came > heard + patience {
@@ -340,6 +363,10 @@ impl Session {
             Err(error) => end = end.or_else(|| Some(End::Log(error.to_string()))),
         }
         self.logged = Some(at);
+        if self.plan.mode == Mode::Control {
+            self.counts.missing += u64::from(output.is_nan());
+            self.counts.rejected += u64::from(answer.status.rejected && output.is_finite());
+        }
         if answer.learner_used {
             self.learned += 1;
         }
@@ -470,12 +497,22 @@ impl Session {
             true => self.beyond + 1,
             false => 0,
         };
+        // Neither is it where it is wanted, nor where the model can be.
+        let astray = |(low, high): (f64, f64)| {
+            outside((low, high)) && 2.0 * (answer.reference - output).abs() > high - low
+        };
+        self.astray_s = match plan.reach.is_some_and(astray) {
+            true => self.astray_s + plan.header.dt,
+            false => (self.astray_s - plan.header.dt).max(0.0),
+        };
         let stuck = plan
             .controller
             .stuck_s()
             .filter(|_| plan.mode == Mode::Control);
         if self.beyond > u32::from(answer.status.rejected) {
             Some(End::Limit(output))
+        } else if self.astray_s >= plan.lost_s - tolerance {
+            Some(End::Astray(output))
         } else if time - self.valid_s >= plan.lost_s - tolerance {
             Some(End::Lost(time - self.valid_s))
         } else {
@@ -546,6 +583,8 @@ impl Session {
             lost,
             old,
             bad,
+            missing,
+            rejected,
         } = self.counts;
         let count = samples.max(1) as f64;
         let learner = self.plan.learner;
@@ -555,6 +594,9 @@ impl Session {
             lost,
             old,
             bad,
+            bad_line: self.bad_line,
+            missing,
+            rejected,
             rmse: (self.plan.mode == Mode::Control && self.compared > 0)
                 .then(|| (self.squares / self.compared as f64).sqrt()),
             learned: learner.map(|_| self.learned as f64 / count),

@@ -48,6 +48,12 @@ pub struct Summary {
     pub old: u64,
     /// Lines with a wrong check, too long, or of no meaning.
     pub bad: u64,
+    /// The last of these lines, as far as it can be read.
+    pub bad_line: Option<String>,
+    /// Samples without a reading.
+    pub missing: u64,
+    /// Readings that were taken for spikes.
+    pub rejected: u64,
     /// Root mean square of reference less output, in mode control, over the readings that were
     /// believed.
     pub rmse: Option<f64>,

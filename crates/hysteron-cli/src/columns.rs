@@ -3,6 +3,7 @@
 use crate::args;
 use crate::terminal::{Result, say};
 use hysteron::{Columns, TablePreview, TableReader};
+use hysteron_files::shell_word;
 use std::path::Path;
 
 /// Names of columns, some of which may not have been given.
@@ -73,8 +74,13 @@ impl Named {
                 refused("the columns do not tell which is the input and the output").into(),
             );
         };
+        let unused = roles.load.filter(|_| given.load.is_none());
+        let unused = unused.map_or(String::new(), |load| {
+            let load = shell_word(&load);
+            format!(", and is not used: `--load {load}` fits a model that depends on it")
+        });
         say(format_args!(
-            "{}: {}",
+            "{}: {}{unused}",
             path.display(),
             roles.reasons.join("; ")
         ));

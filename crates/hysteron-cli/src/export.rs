@@ -228,12 +228,12 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let fmu = match args.dt.zip(args.drive_range).filter(|_| args.controller) {
+    let fmu = match args.dt.filter(|_| args.controller) {
         None => hysteron_export::fmu(&model, &options, target)?,
-        Some((dt, drives)) => {
+        Some(dt) => {
             let chosen = TargetLoop {
                 dt,
-                drives: Some(drives),
+                drives: args.drive_range,
                 gains: args.gains,
                 gate: args.gate,
                 filter_s: args.filter,

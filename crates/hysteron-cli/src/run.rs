@@ -132,6 +132,9 @@ fn to_json(found: &Summary) -> serde_json::Value {
         "lost": found.lost,
         "old": found.old,
         "bad_lines": found.bad,
+        "bad_line": found.bad_line,
+        "missing": found.missing,
+        "rejected": found.rejected,
         "rmse": found.rmse,
         "learned_share": found.learned,
         "jitter_s": found.jitter_s,
@@ -153,12 +156,22 @@ fn to_text(found: &Summary) -> String {
         ),
         format!("slowest answer {:.3} ms", 1e3 * found.slowest_s),
     ];
+    if let Some(line) = &found.bad_line {
+        lines.push(format!("the last bad line: {line:?}"));
+    }
+    if found.missing + found.rejected > 0 {
+        lines.push(format!(
+            "readings missing {}, taken for spikes {}",
+            found.missing, found.rejected
+        ));
+    }
     if let Some(jitter) = found.jitter_s {
         lines.push(format!("jitter {:.3} ms (root mean square)", 1e3 * jitter));
     }
     if let Some((gains, margin)) = found.tuned {
         lines.push(format!(
-            "PID from the model: gain {}, integral time {} s; it may grow {margin:.0}-fold",
+            "PID from the model: gain {}, integral time {} s; on the model it may grow \
+             {margin:.0}-fold",
             text::number(gains.gain),
             text::number(gains.integral_s)
         ));

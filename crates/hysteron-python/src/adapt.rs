@@ -1,6 +1,6 @@
 //! `adapt`.
 
-use crate::choices::{learner, named, no_argument, start_of};
+use crate::choices::{STARTS, choice, learner, named, no_argument, start_of};
 use crate::convert::{result, to_python};
 use crate::error::Raise;
 use crate::inputs::recordings_of;
@@ -78,9 +78,10 @@ impl Adapted {
 ///     shift of the input axis alone, by a load that nobody measures, and runs any model; then the
 ///     table also has 'shift_model', in the input's unit, and 'load_model', if the model's shift
 ///     tells a load.
-/// start : {'off', 'on', 'unknown'}
-///     State of the operators before the first sample. 'unknown': off or on, whichever gives the
-///     smaller error of the model as it is.
+/// start : {'fitted', 'off', 'on', 'unknown'}
+///     State of the operators before the first sample. 'fitted': the one that the model's fit
+///     found, all off if it found none. 'unknown': whichever of these gives the smallest error of
+///     the model as it is.
 /// progress : callable, bool or None
 ///     As for `fit`. Ctrl-C ends the work in any case.
 /// window, every, ridge, gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
@@ -111,8 +112,8 @@ impl Adapted {
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (model, recording, output=None, *, time=None, method="auto", start="off", progress=None, **options),
-    text_signature = "(model, recording, output=None, *, time=None, method='auto', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
+    signature = (model, recording, output=None, *, time=None, method="auto", start="fitted", progress=None, **options),
+    text_signature = "(model, recording, output=None, *, time=None, method='auto', start='fitted', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
 )]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn adapt<'py>(
@@ -178,7 +179,11 @@ pub(crate) fn adapt_options(
 ) -> PyResult<AdaptOptions> {
     let mut options = AdaptOptions {
         learner: learner(method)?,
-        start: start_of(start)?,
+        start: match call {
+            "adapt" => choice("start", start, &STARTS)?,
+            // A loop begins with all operators off or on.
+            _ => start_of(start)?,
+        },
         ..AdaptOptions::default()
     };
     for (name, value) in keywords.into_iter().flatten() {

@@ -15,6 +15,36 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 
+/// Drive range, gains, gate and filter, as one gives them.
+type Settings<'a> = (
+    Option<(f64, f64)>,
+    Option<&'a Pid>,
+    Option<f64>,
+    Option<f64>,
+);
+
+/// The loop that is exported with a controller; `None` without one.
+fn target_loop(
+    controller: bool,
+    dt: Option<f64>,
+    (drives, gains, gate, filter_s): Settings<'_>,
+) -> PyResult<Option<TargetLoop>> {
+    match (controller, dt) {
+        (true, Some(dt)) => Ok(Some(TargetLoop {
+            dt,
+            drives,
+            gains: gains.map(|pid| pid.gains),
+            gate,
+            filter_s,
+        })),
+        (true, None) => Err(PyValueError::new_err("a controller needs `dt`")),
+        (false, _) if gains.is_some() || gate.is_some() || filter_s.is_some() => Err(
+            PyValueError::new_err("`gains`, `gate` and `filter_s` need `controller`"),
+        ),
+        (false, _) => Ok(None),
+    }
+}
+
 #[pymethods]
 impl Model {
     /// Write the model as C99 for a microcontroller, with the algorithm beside it.
@@ -102,24 +132,11 @@ impl Model {
             source,
             adaptation,
         };
-        let chosen = match (controller, dt) {
-            (true, Some(dt)) => Some(TargetLoop {
-                dt,
-                drives: drive_range,
-                gains: gains.map(|pid| pid.gains),
-                gate,
-                filter_s,
-            }),
-            (true, None) => return Err(PyValueError::new_err("a controller needs `dt`")),
-            (false, _) => {
-                let of_one = gains.is_some() || gate.is_some() || filter_s.is_some() || measured_dt;
-                if of_one {
-                    let what = "`gains`, `gate`, `filter_s` and `measured_dt` need `controller`";
-                    return Err(PyValueError::new_err(what));
-                }
-                None
-            }
-        };
+        let settings = (drive_range, gains, gate, filter_s);
+        let chosen = target_loop(controller, dt, settings)?;
+        if measured_dt && !controller {
+            return Err(PyValueError::new_err("`measured_dt` needs `controller`"));
+        }
         let target = Destination::keeping_foreign(&folder, false);
         let export = match chosen {
             None => {
@@ -153,7 +170,8 @@ impl Model {
         result(py, "CExport", dict)
     }
 
-    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools.
+    /// Write the model, its inverse or a controller as a functional mock-up unit for Simulink and
+    /// other tools.
     ///
     /// An existing file is replaced.
     ///
@@ -166,7 +184,22 @@ impl Model {
     /// fmi : {2, 3}
     ///     The version of the standard.
     /// name : str, optional
-    ///     The block's name. By default 'sf_MKP' or 'sf_Inverse_MKP'.
+    ///     The block's name. By default 'sf_MKP', 'sf_Inverse_MKP' or 'sf_Controller_MKP'.
+    /// controller : bool
+    ///     A controller instead of the model: from the wanted and the measured output to the
+    ///     drive. It needs `dt`.
+    /// gains : Pid, optional
+    ///     The gains of the controller. By default from the model, by simulation.
+    /// gate : float, optional
+    ///     A gate against spikes in the controller's readings: what deviates by less than this is
+    ///     never one, in the unit of the output.
+    /// filter_s : float, optional
+    ///     The time constant of a low-pass filter on the controller's readings, s.
+    /// dt : float, optional
+    ///     The sample time of the controller in seconds, above 0. The communication step has to be
+    ///     the same.
+    /// drive_range : tuple of float, optional
+    ///     The lowest and the highest drive of the controller. By default the model's own.
     ///
     /// Returns
     /// -------
@@ -175,7 +208,11 @@ impl Model {
     /// Raises
     /// ------
     /// ExportError
-    ///     For an invalid name or path, and for weights of more than the seventh order in a load.
+    ///     For an invalid name or path, for weights of more than the seventh order in a load, for a
+    ///     controller of a model with a load, and where no gains come from the model.
+    /// ValueError
+    ///     For a controller without `dt`, or of an inverse, and for options of a controller without
+    ///     one.
     /// CoreError
     ///     For the inverse of a model with weights below zero.
     /// FileError
@@ -187,7 +224,15 @@ impl Model {
     /// >>> fmu = model.export_fmu(os.path.join(tempfile.mkdtemp(), 'inverse.fmu'), inverse=True)
     /// >>> fmu.name, fmu.inputs, fmu.outputs
     /// ('sf_Inverse_MKP', ('target', 'heading'), ('input', 'status'))
-    #[pyo3(signature = (path, *, inverse=false, fmi=None, name=None), text_signature = "($self, path, *, inverse=False, fmi=2, name=None)")]
+    #[pyo3(
+        signature = (
+            path, *, inverse=false, fmi=None, name=None, controller=false, gains=None, gate=None,
+            filter_s=None, dt=None, drive_range=None,
+        ),
+        text_signature = "($self, path, *, inverse=False, fmi=2, name=None, controller=False, \
+            gains=None, gate=None, filter_s=None, dt=None, drive_range=None)",
+    )]
+    #[allow(clippy::too_many_arguments)]
     fn export_fmu<'py>(
         &self,
         py: Python<'py>,
@@ -195,13 +240,35 @@ impl Model {
         inverse: bool,
         fmi: Option<Integer>,
         name: Option<String>,
+        controller: bool,
+        gains: Option<&Pid>,
+        gate: Option<f64>,
+        filter_s: Option<f64>,
+        dt: Option<f64>,
+        drive_range: Option<(f64, f64)>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let versions = [(2, Fmi::V2), (3, Fmi::V3)];
         let fmi = fmi.map_or(Ok(Fmi::V2), |fmi| fmi.one_of("fmi", "2 or 3", &versions))?;
+        let settings = (drive_range, gains, gate, filter_s);
+        let chosen = target_loop(controller, dt, settings)?;
+        let problem = match () {
+            () if controller && inverse => Some("a block is a controller or an inverse, not both"),
+            () if controller => None,
+            () => (dt.is_some() || drive_range.is_some())
+                .then_some("`dt` and `drive_range` need `controller`"),
+        };
+        if let Some(problem) = problem {
+            return Err(PyValueError::new_err(problem));
+        }
         let options = FmuOptions { inverse, fmi, name };
-        let fmu = py
-            .detach(|| hysteron_export::fmu(&self.inner, &options, &path))
-            .raise()?;
+        let fmu = match chosen {
+            None => py.detach(|| hysteron_export::fmu(&self.inner, &options, &path)),
+            Some(chosen) => detached(py, || {
+                let scheme = chosen.scheme(&self.inner)?;
+                hysteron_export::fmu_controlled(&self.inner, &scheme, &options, &path)
+            }),
+        }
+        .raise()?;
         let dict = PyDict::new(py);
         dict.set_item("name", fmu.name)?;
         dict.set_item("token", fmu.token)?;

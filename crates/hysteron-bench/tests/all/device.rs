@@ -31,6 +31,8 @@ pub enum Fault {
     Stuck,
     /// What it measures is jammed from here on; its noise goes on.
     Jam,
+    /// The sensor is turned round from here on.
+    Turned,
     /// The drive that answers it never comes.
     NoDrive,
     /// Nothing comes any more.
@@ -76,6 +78,7 @@ struct Board {
     output: f64,
     stuck: Option<f64>,
     jammed: Option<f64>,
+    turned: bool,
     frozen: bool,
     lost_until: u64,
     last_line: String,
@@ -204,6 +207,7 @@ impl Board {
                 Fault::Spike(size) => reading += size,
                 Fault::Stuck => self.stuck = Some(reading),
                 Fault::Jam => self.jammed = Some(self.output),
+                Fault::Turned => self.turned = true,
                 Fault::Freeze => self.frozen = true,
                 Fault::Kill => {
                     let _ = self
@@ -219,6 +223,7 @@ impl Board {
             }
         }
         let reading = self.stuck.unwrap_or(reading);
+        let reading = if self.turned { -reading } else { reading };
         let reading = match n < self.lost_until {
             true => "nan".to_owned(),
             false => format!("{reading:.6}"),

@@ -1,7 +1,7 @@
 //! Runs that go well: each mode, the row of a log, slew, beginning without a bump, going on.
 
 use super::bench::{PID, bench, column, config, folder, plain, rows};
-use super::device::{DT, SAFE, start};
+use super::device::{DT, Fault, SAFE, start};
 use hysteron::{Delay, Model, Operator, Plane, Sign};
 use hysteron_bench::{Config, End, Options, dry_run};
 
@@ -134,6 +134,65 @@ fn every_kind_of_controller_follows() {
             .count();
         assert_eq!(expected > 70, kind != "pid", "{kind}");
     }
+}
+
+#[test]
+fn an_output_far_beyond_the_model_ends_a_run_unless_limits_are_given() {
+    for (limits, astray) in [("", true), (", output = [-40, 40]", false)] {
+        let folder = folder();
+        model(&folder);
+        let text = format!(
+            "mode = 'control'\nlog = 'run.csv'\nreference = {{ table = 'reference.csv' }}\n\
+             limits = {{ drive = [0, 8]{limits} }}\n\
+             controller = {{ kind = 'inverse-pid', model = 'model.json' }}"
+        );
+        let (address, served) = start(vec![(20, Fault::Turned)]);
+        let config = config(&folder, &text, &format!("tcp = '{address}'"));
+        let found = plain(&config, &Options::default()).unwrap();
+        let report = served.join().unwrap();
+        assert_eq!(report.drive, SAFE);
+        assert_eq!(matches!(found.end, End::Astray(_)), astray, "{}", found.end);
+        assert_eq!(found.end.code(), if astray { 5 } else { 0 });
+    }
+}
+
+#[test]
+fn a_log_is_gone_on_with_by_the_same_run_only() {
+    let folder = folder();
+    let short = PID.replace("duration_s = 3", "duration_s = 1");
+    let go = |text: &str, resume: bool| {
+        let (address, served) = start(vec![]);
+        let config = config(&folder, text, &format!("tcp = '{address}'"));
+        let options = Options {
+            resume,
+            ..Options::default()
+        };
+        let found = plain(&config, &options).map_err(|error| error.to_string());
+        served.join().unwrap();
+        (
+            found,
+            dry_run(&config, &options).map_err(|error| error.to_string()),
+        )
+    };
+    go(&short, false).0.unwrap();
+    let before = std::fs::read(folder.path().join("run.csv")).unwrap();
+    let (over, dry) = go(&short, true);
+    assert!(over.unwrap_err().contains("nothing is left"));
+    assert!(
+        dry.unwrap()
+            .iter()
+            .any(|line| line.contains("behind sample 20"))
+    );
+    model(&folder);
+    let other = PID.replace("kind = 'pid'", "kind = 'inverse-pid', model = 'model.json'");
+    let (refused, dry) = go(&other, true);
+    for error in [refused.unwrap_err(), dry.unwrap_err()] {
+        assert!(error.contains("another controller"), "{error}");
+    }
+    assert_eq!(
+        std::fs::read(folder.path().join("run.csv")).unwrap(),
+        before
+    );
 }
 
 #[test]

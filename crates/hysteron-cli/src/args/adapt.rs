@@ -14,9 +14,8 @@ pub(crate) struct Adapt {
     pub(crate) data: PathBuf,
     #[command(flatten)]
     pub(crate) columns: Columns,
-    /// State of the operators before the first sample; `unknown`: off or on, whichever gives the
-    /// smaller error
-    #[arg(long, value_enum, default_value = "off")]
+    /// State of the operators before the first sample
+    #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: AdaptStart,
     /// What learns, and how
     #[arg(long, default_value = "auto", value_parser = learners())]

@@ -179,12 +179,7 @@ pub(crate) struct ExportFmu {
     #[arg(long)]
     pub(crate) inverse: bool,
     /// A controller instead of the model: from the wanted and the measured output to the drive
-    #[arg(
-        long,
-        requires = "dt",
-        requires = "drive_range",
-        conflicts_with = "inverse"
-    )]
+    #[arg(long, requires = "dt", conflicts_with = "inverse")]
     pub(crate) controller: bool,
     /// Gains of its PID: gain, integral time and derivative time in s [default: from the model, by
     /// simulation]
@@ -216,7 +211,7 @@ pub(crate) struct ExportFmu {
         requires = "controller"
     )]
     pub(crate) dt: Option<f64>,
-    /// Its lowest and highest drive
+    /// Its lowest and highest drive [default: those that the model was fitted with]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true,
         requires = "controller")]
     pub(crate) drive_range: Option<(f64, f64)>,

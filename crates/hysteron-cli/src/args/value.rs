@@ -69,11 +69,13 @@ pub(crate) enum Robust {
 /// The start of an adaptation.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum AdaptStart {
+    /// The state that the model's fit found; all off if it found none
+    Fitted,
     /// All off, as after the lowest input
     Off,
     /// All on, as after the highest input
     On,
-    /// Not known: estimated together with the weights
+    /// Not known: whichever of these gives the model as it is the smallest error
     Unknown,
 }
 
@@ -227,6 +229,7 @@ pub(crate) enum Sign {
 impl From<AdaptStart> for hysteron::Start {
     fn from(start: AdaptStart) -> Self {
         match start {
+            AdaptStart::Fitted => Self::Fitted,
             AdaptStart::Off => Self::Off,
             AdaptStart::On => Self::On,
             AdaptStart::Unknown => Self::Unknown,

@@ -55,6 +55,28 @@ fn both_blocks_in_both_standards() {
 }
 
 #[test]
+fn a_controller_has_the_drives_of_the_model_or_those_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("m.json"), MODEL).unwrap();
+    let export = "export fmu m.json --controller --dt 0.05 --gains 1,2";
+    let own = json(here, &format!("{export} -o own.fmu"));
+    assert_eq!(own["name"], "sf_Controller_MKP");
+    // The plane is from 20 to 80 with two levels: its bottom is one step below.
+    let same = json(here, &format!("{export} --drive-range -40,80 -o same.fmu"));
+    assert_eq!(own["token"], same["token"]);
+    let other = json(here, &format!("{export} --drive-range 30,70 -o other.fmu"));
+    assert_ne!(own["token"], other["token"]);
+    let done = run(here, "export fmu m.json --controller -o none.fmu");
+    assert_eq!(done.status.code(), Some(2));
+    assert!(
+        text(&done.stderr).contains("--dt"),
+        "{}",
+        text(&done.stderr)
+    );
+}
+
+#[test]
 fn what_cannot_be_exported() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();

@@ -6,7 +6,7 @@ use super::learns::Learns;
 use super::mixture::AutoOptions;
 use super::refit::{Core, Refit};
 use crate::error::{Error, Result};
-use crate::model::{Model, Operators, Sample, Sign, State, Wanted};
+use crate::model::{Model, Operators, Sample, Sign, Start, State, Wanted};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{Adaptation, Channel, Learning, Solution, StageState, Stages};
@@ -518,6 +518,13 @@ impl Adaptive {
             self.follow();
         }
         Ok(())
+    }
+
+    /// Begins a recording. What was learned stays.
+    pub(super) fn start_from(&mut self, start: Start) -> Result<()> {
+        self.state.operators = self.offline.state_at(start).operators;
+        self.core.rebase(&mut self.state.operators)?;
+        self.begin()
     }
 
     /// Others set the state of the operators; the stages are at rest.

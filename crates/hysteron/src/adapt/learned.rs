@@ -5,7 +5,7 @@ use super::{
     no_samples,
 };
 use crate::error::Result;
-use crate::model::{FitSummary, Model};
+use crate::model::{FitSummary, Model, Start};
 use crate::recording::{Origin, Recording};
 use crate::series::{Errors, mean_and_deviation};
 use hysteron_core::{Adaptation, Learning, Method, Outcome};
@@ -56,7 +56,9 @@ pub(super) struct Learned {
     pub(super) learned: Vec<Learning<f64>>,
     /// The outputs of the model left alone.
     pub(super) fixed: Vec<f64>,
-    /// The outputs of the last model, run again from the start.
+    /// Where the operators started.
+    pub(super) start: Start,
+    /// The outputs of the last model, run again from there.
     pub(super) again: Vec<f64>,
     pub(super) probation: usize,
     /// How many of the last samples have an output that seems to stand still.
@@ -144,7 +146,7 @@ impl Learned {
             joined,
             options,
             self.options.described(),
-            (&again, counts),
+            (&again, counts, self.start),
         ));
         let drift = Drift::between(&offline, &last, self.shift.as_ref());
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
@@ -185,7 +187,7 @@ fn summary(
     recording: &Recording,
     options: &AdaptOptions,
     described: serde_json::Value,
-    (again, counts): (&Errors, OutcomeCounts),
+    (again, counts, start): (&Errors, OutcomeCounts, Start),
 ) -> FitSummary {
     let before = offline.fit.clone().unwrap_or_default();
     let source = recording.source.as_ref();
@@ -202,7 +204,7 @@ fn summary(
         }),
     );
     FitSummary {
-        start: options.start,
+        start,
         open_at_start: 0,
         samples: again.samples,
         rmse: again.rmse,

@@ -224,19 +224,30 @@ macro_rules! options {
         /// recording. `Y` is the range of the recording's output or that of the model, whichever is
         /// larger; single readings far from all others do not count for it. `N` is the number of
         /// weights.
-        #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
         #[serde(default, deny_unknown_fields)]
         pub struct AdaptOptions {
             /// Which parameters are adapted, and by which method. Default `auto`.
             #[serde(rename = "method")]
             pub learner: Learner,
-            /// State of the operators before the first sample. Unknown: off or on, whichever gives
-            /// the unadapted model the smaller errors. Default `off`.
+            /// State of the operators before the first sample of a recording. Unknown: fitted, off
+            /// or on, whichever gives the unadapted model the smallest errors. Default `fitted`. A
+            /// loop begins with all operators off, unless they are told to be on.
             pub start: Start,
             $(
                 #[doc = concat!($purpose, ". ", $range, ". Default: ", $default, ".")]
                 pub $name: Option<$type>,
             )*
+        }
+
+        impl Default for AdaptOptions {
+            fn default() -> Self {
+                Self {
+                    learner: Learner::default(),
+                    start: Start::Fitted,
+                    $($name: None,)*
+                }
+            }
         }
 
         impl AdaptOptions {

@@ -1,7 +1,7 @@
 //! A model that follows an unknown load while it runs, sample by sample.
 
 use crate::error::{Error, Result};
-use crate::model::{Model, Sample, State, Wanted};
+use crate::model::{Model, Sample, Start, State, Wanted};
 use hysteron_core::{Channel, Learning, ShiftEstimator, ShiftOptions, Solution, Stages};
 
 /// A [`Model`] under a load that nobody measures, with its state.
@@ -250,6 +250,11 @@ impl AdaptiveLoad {
     /// Turns every operator on, also in the state of the inverse. The shift stays.
     pub fn saturate(&mut self) {
         self.begin(self.offline.saturated());
+    }
+
+    /// Begins a recording, also in the state of the inverse. The shift stays.
+    pub(super) fn start_from(&mut self, start: Start) {
+        self.begin(self.offline.state_at(start));
     }
 
     /// While frozen, [`AdaptiveLoad::step`] returns the expected output but does not learn.

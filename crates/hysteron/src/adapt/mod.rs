@@ -105,7 +105,7 @@ pub fn adapt(
     let mut adapted = learned.judged(&joined, options)?;
     let mut whole = model.around(adapted.model.operators().clone());
     whole.fit = adapted.model.fit.take();
-    adapted.model = whole;
+    adapted.model = adapted.model.starts(whole, Start::Fitted)?;
     Ok(adapted)
 }
 
@@ -121,7 +121,7 @@ fn learn(
     let learned_by = options.resolve(model, joined)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
-    let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
+    let (start, fixed) = fixed(&offline, recordings, options.start)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
@@ -133,11 +133,7 @@ fn learn(
     let mut learned = Vec::with_capacity(count);
     let (mut last, mut all_held) = (None, Vec::new());
     for recording in recordings {
-        match (from_on, learned.is_empty()) {
-            (true, _) => adaptive.saturate()?,
-            (false, true) => {}
-            (false, false) => adaptive.reset()?,
-        }
+        adaptive.start_from(start)?;
         // Those up to the last samples, and these.
         let sure = (count - unsure).saturating_sub(learned.len());
         let sure = sure.min(recording.len());
@@ -176,8 +172,10 @@ fn learn(
         last = Some((adaptive.model()?, adaptive.shares()));
     }
     let (last, shares) = last.ok_or_else(no_samples)?;
+    let last = offline.starts(last, start)?;
     Ok(Learned {
-        again: run_from(&last, from_on, recordings)?,
+        again: run_from(&last, Start::Fitted, recordings)?,
+        start,
         offline,
         last,
         learned,
@@ -233,38 +231,39 @@ fn no_samples() -> Error {
     Error::Fit("no samples".into())
 }
 
-/// Whether the operators start on, and the outputs of the fixed model.
-fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(bool, Vec<f64>)> {
-    let from = |on| run_from(model, on, recordings);
+/// Where the operators start in each recording, and the outputs of the fixed model from there.
+fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(Start, Vec<f64>)> {
     let error = |output: &[f64]| {
         let pairs = recordings.iter().flat_map(|r| &r.output).zip(output);
         pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>()
     };
-    match start {
-        // A model that adapts starts as it is, with its operators off or on.
-        Start::Off | Start::Fitted => Ok((false, from(false)?)),
-        Start::On => Ok((true, from(true)?)),
-        Start::Rest => Err(Error::Fit(
-            "no rest is found for a model that adapts: take the start off, on or unknown".into(),
-        )),
-        Start::Unknown => {
-            let (off, on) = (from(false)?, from(true)?);
-            Ok(match error(&on) < error(&off) {
-                true => (true, on),
-                false => (false, off),
-            })
+    let asked = match start {
+        Start::Off | Start::On | Start::Fitted => vec![start],
+        Start::Rest => {
+            let what = "no rest is found for a model that adapts: take the start fitted, off, on \
+                        or unknown";
+            return Err(Error::Fit(what.into()));
+        }
+        Start::Unknown => vec![Start::Fitted, Start::Off, Start::On],
+    };
+    let mut least: Option<(f64, Start, Vec<f64>)> = None;
+    for start in asked {
+        let output = run_from(model, start, recordings)?;
+        let error = error(&output);
+        if least.as_ref().is_none_or(|(best, ..)| error < *best) {
+            least = Some((error, start, output));
         }
     }
+    least
+        .map(|(_, start, output)| (start, output))
+        .ok_or_else(no_samples)
 }
 
-/// The outputs of a model that starts off or on in each recording.
-fn run_from(model: &Model, on: bool, recordings: &[Recording]) -> Result<Vec<f64>> {
+/// The outputs of a model that starts so in each recording.
+fn run_from(model: &Model, start: Start, recordings: &[Recording]) -> Result<Vec<f64>> {
     let mut all = Vec::new();
     for recording in recordings {
-        let mut state = match on {
-            true => model.saturated(),
-            false => model.off(),
-        };
+        let mut state = model.state_at(start);
         let (begin, around) = (all.len(), Surroundings::from_recording(model, recording));
         all.resize(begin + recording.len(), 0.0);
         model.run_in(&mut state, &recording.input, around, &mut all[begin..])?;

@@ -3,7 +3,7 @@
 use super::stuck::at_the_end;
 use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation, run_from};
 use crate::error::Result;
-use crate::model::{Model, Surroundings};
+use crate::model::{Model, Start, Surroundings};
 use crate::progress::{Progress, SAMPLES_BETWEEN};
 use crate::recording::Recording;
 
@@ -38,7 +38,7 @@ pub(super) fn adapt(
         Some(load) => model.at_load(load)?,
         None => model.clone(),
     };
-    let (from_on, fixed) = fixed(&offline, recordings, options.start)?;
+    let (start, fixed) = fixed(&offline, recordings, options.start)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
@@ -49,11 +49,7 @@ pub(super) fn adapt(
     let (mut learned, mut shifts, mut loads) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = adaptive.clone();
     for recording in recordings {
-        match (from_on, learned.is_empty()) {
-            (true, _) => adaptive.saturate(),
-            (false, true) => {}
-            (false, false) => adaptive.reset(),
-        }
+        adaptive.start_from(start);
         let around = Surroundings {
             load: None,
             ..Surroundings::from_recording(model, recording)
@@ -84,9 +80,10 @@ pub(super) fn adapt(
         load: last.load(),
         from: last.told(),
     };
-    let last = last.model()?;
+    let last = offline.starts(last.model()?, start)?;
     Learned {
-        again: run_from(&last, from_on, recordings)?,
+        again: run_from(&last, Start::Fitted, recordings)?,
+        start,
         offline,
         last,
         learned,

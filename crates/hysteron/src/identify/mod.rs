@@ -8,6 +8,7 @@
 
 mod changed;
 mod choose;
+#[cfg(feature = "data")]
 mod chosen;
 mod delay;
 mod doubt;
@@ -31,6 +32,7 @@ pub(crate) use choose::left_out::{predicted_from, predicted_without};
 pub(crate) use choose::start::MANY_OPEN;
 pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
+#[cfg(feature = "data")]
 pub use chosen::Chosen;
 pub(crate) use doubt::excitation::Unresolved;
 pub use doubt::excitation::excitation;

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::model::operators::FittedStart;
-use crate::model::{Model, State};
+use crate::model::{Model, Start, State};
 
 impl Model {
     /// The state that the model starts from: the one that its fit kept, or else every operator off.
@@ -30,6 +30,24 @@ impl Model {
     #[must_use]
     pub fn saturated(&self) -> State {
         State::new(self, self.operators().saturated())
+    }
+
+    /// The state in which a recording begins that starts so: off where `start` has to be found.
+    pub(crate) fn state_at(&self, start: Start) -> State {
+        match start {
+            Start::Fitted => self.start(),
+            Start::On => self.saturated(),
+            Start::Off | Start::Rest | Start::Unknown => self.off(),
+        }
+    }
+
+    /// The model `changed` from this one, with the start of a recording that this one began so.
+    pub(crate) fn starts(&self, changed: Self, start: Start) -> Result<Self> {
+        match start {
+            Start::Off => changed.with_start(None),
+            Start::Fitted if self.start.is_none() => changed.with_start(None),
+            _ => changed.starting_from(&self.state_at(start)),
+        }
     }
 
     /// The same model, which starts from the turning points of `state`.

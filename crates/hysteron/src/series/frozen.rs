@@ -20,6 +20,8 @@ const NOISY: f64 = 0.02;
 /// two ends, and so far the other series may go.
 const INSIDE: std::ops::RangeInclusive<f64> = 0.1..=0.9;
 const FAR_INSIDE: f64 = 0.5;
+/// A series repeats a reading at most so often where it has noise and no coarse steps.
+const SELDOM: f64 = 0.05;
 /// What is noise and no slow answer: the mean squared step, by twice the variance. It is 1 for white
 /// noise and near 0 for a smooth series (von Neumann 1941).
 const ROUGH: f64 = 0.25;
@@ -42,8 +44,16 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         span > 0.0 && rise.min(fall) >= share * span && !not_begun(run)
     };
     let inside = |run: &Range<usize>| INSIDE.contains(&((values[run.start] - low) / (high - low)));
-    let (far, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(|run| moves_by(FAR, run));
     let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
+    // Of readings that differ even at rest, equal ones are no rest.
+    let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    let elsewhere = values.len() - count(&long);
+    let is_fine = (repeats + long.len() - count(&long)) as f64 <= SELDOM * elsewhere as f64;
+    let far = |run: &Range<usize>| match is_fine && inside(run) {
+        true => FAR_INSIDE,
+        false => FAR,
+    };
+    let (far, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(|run| moves_by(far(run), run));
     let others = values.len() - count(&far);
     let mut found = match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
         true => Vec::new(),
@@ -201,6 +211,18 @@ mod tests {
         output[1200..1500].fill(held);
         assert_eq!(frozen(&output, &input), vec![1200..1500]);
         assert_eq!(frozen(&input, &output), vec![]);
+        // With noise elsewhere, inside its range, and to the end: half of the range is enough.
+        let half: Vec<f64> = (0..2000)
+            .map(|n| if n < 700 { input[n] } else { 0.6 * input[n] })
+            .collect();
+        let mut still: Vec<f64> = (0..2000).map(|n| half[n] + 1e-3 * noise(n)).collect();
+        let held = still[800];
+        still[800..].fill(held);
+        assert_eq!(frozen(&still, &half), vec![800..2000]);
+        // Without noise it may be what the material does.
+        let mut plain = half.clone();
+        plain[800..].fill(half[800]);
+        assert_eq!(frozen(&plain, &half), vec![800..2000]);
         // A drive that is off, while the actuator goes back.
         let mut off = input.clone();
         off[1000..].fill(0.0);

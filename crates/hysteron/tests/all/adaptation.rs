@@ -4,7 +4,7 @@ use crate::common::shared;
 use hysteron::{
     AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, FirstOrder, Fit, FitOptions,
     Learner, Model, Operator, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start,
-    Step, Turning, Window, adapt, forward, plane_of, prepare,
+    Step, Turning, Window, adapt, evaluate, forward, plane_of, prepare,
 };
 
 const LEARNERS: [Learner; 4] = [
@@ -549,4 +549,40 @@ fn what_a_wrong_lag_teaches_is_judged_by_the_whole_model() {
         }
     }
     assert!((1..20).contains(&worse), "{worse}");
+}
+
+#[test]
+fn a_recording_begins_where_the_fit_found_the_actuator() {
+    // Operators that were not all off: a rest inside the range, as of a demagnetised core.
+    let plant = wire(1.0, 0);
+    let input: Vec<f64> = (0..1200)
+        .map(|n| 50.0 + 25.0 * (0.05 * f64::from(n)).sin() * (1.0 - f64::from(n) / 1300.0))
+        .collect();
+    let mut state = plant.saturated();
+    let output = input
+        .iter()
+        .map(|t| plant.step(&mut state, *t).unwrap().output);
+    let recording = Recording::new(input.clone(), output.collect()).unwrap();
+    let model = Fit::new().levels(8).bootstrap(0).run(&recording).unwrap();
+    assert!(model.fitted().is_some(), "the start is not all off");
+    let own = evaluate(&model, &recording).unwrap().forward.rmse;
+    for start in [Start::Fitted, Start::Unknown] {
+        let options = AdaptOptions {
+            learner: Learner::Fixed,
+            start,
+            ..AdaptOptions::default()
+        };
+        let adapted = adapt(&model, &recording, &options, Progress::NONE).unwrap();
+        // Sums in another order.
+        assert!(
+            (adapted.whole.fixed.rmse - own).abs() <= 1e-12 * own.max(1.0),
+            "{start:?}"
+        );
+        let again = evaluate(&adapted.model, &recording).unwrap().forward.rmse;
+        assert!(
+            (again - own).abs() <= 1e-9,
+            "the adapted model begins there, too"
+        );
+    }
+    assert_eq!(AdaptOptions::default().start, Start::Fitted);
 }
