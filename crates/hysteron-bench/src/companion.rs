@@ -2,6 +2,7 @@
 
 use crate::config::{Config, Mode};
 use crate::error::{Result, of_file};
+use crate::row::{self, At};
 use hysteron::Model;
 use hysteron_files::{AtomicFile, Own};
 use serde::{Deserialize, Serialize};
@@ -9,6 +10,8 @@ use sha2::{Digest, Sha256};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// A run is over where so little of it is left, as a share of it.
+const EARLY: f64 = 1e-9;
 const FORMAT: &str = "hysteron-run";
 const VERSION: u32 = 1;
 
@@ -32,8 +35,7 @@ pub(crate) struct Companion {
     pub(crate) bytes: Option<u64>,
     /// How the run ended; `None` while it runs.
     pub(crate) end: Option<String>,
-    /// What the drive followed: mode, controller, and the digest of its model; `None` in files of
-    /// earlier versions.
+    /// What the drive followed; `None` in files of earlier versions.
     #[serde(default)]
     pub(crate) follows: Option<Follows>,
     /// What learned, and the model as it was at the end; `None` where nothing learned.
@@ -47,11 +49,22 @@ pub(crate) struct Companion {
 pub(crate) struct Follows {
     pub(crate) mode: Mode,
     pub(crate) controller: Option<String>,
-    /// SHA-256 of the model as it was given.
+    /// SHA-256 of the model.
     pub(crate) model: Option<String>,
 }
 
 impl Follows {
+    /// What another one has that is not of this one. Profiles and references may go on otherwise.
+    fn differs(&self, other: &Self) -> Option<&'static str> {
+        [
+            (self.mode != other.mode, "mode"),
+            (self.controller != other.controller, "controller"),
+            (self.model != other.model, "model"),
+        ]
+        .into_iter()
+        .find_map(|(differs, what)| differs.then_some(what))
+    }
+
     pub(crate) fn of(config: &Config, model: Option<&Model>) -> Self {
         let controller = config.controller.as_ref();
         let controller = controller.filter(|_| config.mode == Mode::Control);
@@ -92,19 +105,34 @@ impl Companion {
         }
     }
 
-    /// What another run has that is not of this log.
-    pub(crate) fn differs(&self, other: &Self) -> Option<&'static str> {
-        if (&self.device, &self.columns) != (&other.device, &other.columns) {
-            return Some("device");
+    /// Refuses to go on with the rows of this log: where another drive is followed, or nothing is
+    /// left until `end_s`. Where it ends otherwise; `None` for a log without rows.
+    ///
+    /// # Errors
+    /// [`crate::Error::Config`], and [`hysteron::Error::File`].
+    pub(crate) fn refuse(
+        &self,
+        config: &Config,
+        follows: &Follows,
+        end_s: Option<f64>,
+        rows: &Path,
+    ) -> Result<Option<At>> {
+        let other = self.follows.as_ref().and_then(|own| own.differs(follows));
+        if let Some(what) = other {
+            let what = format!("the log is one of another {what}: name another log");
+            return Err(config.refused("log", what));
         }
-        let (own, other) = (self.follows.as_ref()?, other.follows.as_ref()?);
-        [
-            (own.mode != other.mode, "mode"),
-            (own.controller != other.controller, "controller"),
-            (own.model != other.model, "model"),
-        ]
-        .into_iter()
-        .find_map(|(differs, what)| differs.then_some(what))
+        let last = row::last(rows)?;
+        let over = |end: &f64| {
+            last.is_some_and(|last| last.time - self.origin_s >= end - EARLY * end.abs())
+        };
+        match end_s.filter(over) {
+            None => Ok(last),
+            Some(end) => {
+                let what = format!("nothing is left to run: the log goes to the end, {end} s");
+                Err(config.refused("log", what))
+            }
+        }
     }
 
     /// Whether the file at `log` is one of ours that nobody has changed.

@@ -159,7 +159,8 @@ pub enum Tuning {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Safety {
-    /// So long without a valid reading, s. Default: 0.5 s, and at least five samples.
+    /// So long without a valid reading, or with readings far beyond what the model reaches, s.
+    /// Default: 0.5 s, and at least five samples.
     pub lost_s: Option<f64>,
     /// So long without any change where the model expects one, s. Default 1, and at least five
     /// samples. In mode `record`: so long without more than noise, and at least while the profile

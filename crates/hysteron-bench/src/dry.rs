@@ -5,6 +5,7 @@ use crate::config::{Config, Mode};
 use crate::error::Result;
 use crate::plan::Sources;
 use crate::protocol::ToDevice;
+use crate::row::At;
 use crate::summary::{Options, log_path};
 use crate::sweep::LEAST_S;
 use crate::{device, log};
@@ -16,18 +17,16 @@ use crate::{device, log};
 pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
     let path = log_path(config, options)?;
     let sources = Sources::read(config)?;
+    let course_end = sources.course.as_ref().map(|course| course.end_s());
+    let end_s = config.duration_s.or(course_end);
     let resumed = match options.resume {
         false => log::claim(&path, options.force).map(|()| None)?,
         true => {
             log::resumable(&path)?;
             let before = Companion::of(&path)?;
-            let mut own = before.clone();
-            own.follows = Some(Follows::of(config, sources.model.as_ref()));
-            if let Some(what) = before.differs(&own) {
-                let what = format!("the log is one of another {what}: name another log");
-                return Err(config.refused("log", what));
-            }
-            Some(before)
+            let follows = Follows::of(config, sources.model.as_ref());
+            let last = before.refuse(config, &follows, end_s, &log::rows_of(&path))?;
+            Some((before.origin_s, last))
         }
     };
     let or = |value: Option<String>, other: &str| value.unwrap_or_else(|| other.to_owned());
@@ -43,12 +42,12 @@ pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
         format!("device    {}", device::name(config)),
         format!("log       {}", path.display()),
     ];
-    if let Some(before) = resumed {
-        lines.push(match (before.end, before.last) {
-            (Some(end), (number, time)) => {
-                format!("resumes   behind sample {number}, at {time} s ({end})")
+    if let Some((origin_s, last)) = resumed {
+        lines.push(match last {
+            Some(At { number, time }) => {
+                format!("resumes   after sample {number}, at {} s", time - origin_s)
             }
-            (None, _) => "resumes   behind its last whole row; that run was killed".into(),
+            None => "resumes   a log without rows".into(),
         });
     }
     if let Some(course) = &sources.course {
@@ -58,13 +57,9 @@ pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
             course.end_s()
         ));
     }
-    let course_end = sources.course.as_ref().map(|course| course.end_s());
     lines.push(format!(
         "duration  {}",
-        or(
-            seconds(config.duration_s.or(course_end)),
-            "until it is stopped"
-        )
+        or(seconds(end_s), "until it is stopped")
     ));
     lines.push(format!(
         "drive     {}; slew {}",
@@ -76,7 +71,13 @@ pub fn dry_run(config: &Config, options: &Options) -> Result<Vec<String>> {
     ));
     lines.push(format!(
         "output    {}",
-        or(range(config.limits.output), "not limited")
+        or(
+            range(config.limits.output),
+            match (config.mode, &sources.model) {
+                (Mode::Control, Some(_)) => "the run ends far beyond what the model reaches",
+                _ => "not limited",
+            }
+        )
     ));
     if let (Some(options), Mode::Control) = (&config.controller, config.mode) {
         let gains = match options.gains().filter(|_| options.kind.has_pid()) {

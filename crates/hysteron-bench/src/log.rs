@@ -23,7 +23,7 @@ fn is_parquet(path: &Path) -> bool {
 }
 
 /// Where the rows of a log stand while it is written.
-fn rows_of(path: &Path) -> PathBuf {
+pub(crate) fn rows_of(path: &Path) -> PathBuf {
     match is_parquet(path) {
         true => {
             let mut name = path.as_os_str().to_owned();

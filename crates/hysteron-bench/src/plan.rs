@@ -11,7 +11,7 @@ use crate::tune::tune;
 use crate::{device, error};
 use hysteron::control::{Compensator, Controller, Scheme};
 use hysteron::{AdaptOptions, Learner, Model, Sample};
-use hysteron_sim::{joint::Tuned, track};
+use hysteron_sim::{joint::Tuned, joint::UNKNOWN, track};
 
 /// Samples of a reference that a controller is told ahead, at most.
 const MOST_AHEAD: usize = 10_000;
@@ -25,7 +25,7 @@ const COARSE: f64 = 0.1;
 
 /// An output that is further beyond what the model reaches than this share of it is no model's.
 const ASTRAY: f64 = 0.5;
-/// A reference may leave what the model reaches by this share of it: the model knows that no better.
+/// A reference that leaves what the model reaches by less than this share of it is not told of.
 const HARDLY: f64 = 0.01;
 
 /// What is read before the device is asked anything.
@@ -89,7 +89,7 @@ pub(crate) struct Plan {
     pub(crate) learner: Option<Learner>,
     pub(crate) tuned: Option<Tuned>,
     /// What the drive follows.
-    pub(crate) follows: Option<Follows>,
+    pub(crate) follows: Follows,
     /// What somebody should know before it begins.
     pub(crate) remarks: Vec<String>,
 }
@@ -145,7 +145,9 @@ impl Plan {
             drives,
             outputs: config.limits.output,
             reach: match (config.mode, config.limits.output, &sources.model) {
-                (Mode::Control, None, Some(model)) => Some(about(model, ASTRAY)),
+                (Mode::Control, None, Some(model)) => {
+                    Some(about(model, ASTRAY)).filter(|(low, high)| high > low)
+                }
                 _ => None,
             },
             lost_s,
@@ -158,7 +160,7 @@ impl Plan {
             beside: made.beside,
             learner: made.learner,
             tuned: made.tuned,
-            follows: Some(Follows::of(config, sources.model.as_ref())),
+            follows: Follows::of(config, sources.model.as_ref()),
             remarks: Vec::new(),
             header,
         };
@@ -221,9 +223,11 @@ impl Plan {
         // A model without time answers at once, however late the plant is.
         let unknown = model.filter(|model| self.tuned.is_some() && !model.is_timed());
         let unknown = unknown.map(|_| {
-            "the model does not say how fast the plant is: the gains suppose that it answers \
-             within ten samples; give smaller ones if it rings"
-                .into()
+            let samples = UNKNOWN * self.controller.due();
+            format!(
+                "the model does not say how fast the plant is: the gains suppose that it answers \
+                 within {samples} samples; give smaller ones if it rings"
+            )
         });
         let all = [clipped, outside, unreachable, unwatched, narrow, unknown];
         all.into_iter().flatten().collect()
@@ -335,9 +339,9 @@ fn about(model: &Model, share: f64) -> (f64, f64) {
     (off.min(on) - room, off.max(on) + room)
 }
 
-/// With four digits: for people.
+/// With six digits: for people.
 fn short(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// What is never taken for a spike, in the output's unit.

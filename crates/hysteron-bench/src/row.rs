@@ -1,6 +1,6 @@
 //! A row of the log: a sample, and the answer to it.
 
-use crate::error::Result;
+use crate::error::{Result, of_file};
 use crate::plan::Plan;
 use crate::protocol::{Header, Sample};
 use hysteron::TableReader;
@@ -49,7 +49,7 @@ impl Answer {
         sample: &Sample,
         at: At,
         (drive, command): (f64, &str),
-        (word, learner): (Option<&str>, &str),
+        (word, learner): (Option<&'static str>, &str),
     ) -> Vec<String> {
         let readings = || header.columns.iter().zip(&sample.readings);
         let output = readings().find(|(column, _)| column.name == OUTPUT);
@@ -70,27 +70,18 @@ impl Answer {
         row
     }
 
-    /// What was odd. A `word` in its place hides no reading that is none: a fit leaves that out.
-    fn words(&self, output: f64, word: Option<&str>) -> String {
-        let none = |word: &str| match output.is_nan() {
-            true => format!("missing+{word}"),
-            false => word.to_owned(),
-        };
-        if let Some(word) = word {
-            return none(word);
-        }
+    /// What was odd: of the reading, and of the drive that answers it, which a `word` may say.
+    fn words(&self, output: f64, word: Option<&'static str>) -> String {
+        let answered = word.is_none();
         let words = [
             (output.is_nan(), "missing"),
             (self.status.rejected && output.is_finite(), "rejected"),
             (self.status.stuck, "stuck"),
-            (self.limited, "limited"),
-            (self.status.out_of_reach, "out-of-reach"),
+            (answered && self.limited, "limited"),
+            (answered && self.status.out_of_reach, "out-of-reach"),
         ];
-        let found: Vec<&str> = words
-            .iter()
-            .filter(|(is, _)| *is)
-            .map(|(_, word)| *word)
-            .collect();
+        let found = words.iter().filter(|(is, _)| *is).map(|(_, word)| *word);
+        let found: Vec<&str> = found.chain(word).collect();
         match found.is_empty() {
             true => "ok".into(),
             false => found.join("+"),
@@ -127,6 +118,34 @@ fn or_empty(value: f64) -> String {
         true => String::new(),
         false => value.to_string(),
     }
+}
+
+/// The last whole row of a log; `None` for a log without rows.
+///
+/// # Errors
+/// [`hysteron::Error::File`].
+pub(crate) fn last(rows: &Path) -> Result<Option<At>> {
+    let text = std::fs::read_to_string(rows).map_err(|source| of_file(rows, source))?;
+    let mut lines = text
+        .split_inclusive('\n')
+        .filter(|line| line.ends_with('\n'));
+    let names: Vec<&str> = lines
+        .next()
+        .unwrap_or_default()
+        .trim_end()
+        .split(',')
+        .collect();
+    let value = |row: &str, name: &str| {
+        let place = names.iter().position(|column| *column == name)?;
+        row.trim_end().split(',').nth(place)?.parse::<f64>().ok()
+    };
+    let at = |row: &str| {
+        Some(At {
+            number: value(row, "sample")? as u64,
+            time: value(row, "time")?,
+        })
+    };
+    Ok(lines.last().and_then(at))
 }
 
 /// Lets a controller run through the rows of a log, so that its model is where the actuator is and

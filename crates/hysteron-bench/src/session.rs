@@ -26,8 +26,6 @@ const LOOK: Duration = Duration::from_millis(20);
 const LEAVE: Duration = Duration::from_secs(1);
 /// Characters of a bad line that are shown.
 const SHOWN: usize = 60;
-/// A run is over where so little of it is left, s.
-const EARLY: f64 = 1e-9;
 /// Drives that the device may name later.
 const REMEMBERED: usize = 4096;
 
@@ -142,27 +140,22 @@ impl Session {
         let columns = columns(&plan.header);
         let safe = plan.header.safe;
         let mut companion = Companion::new(&plan.header.name, columns.clone());
-        companion.follows = plan.follows.clone();
         let mut logged = None;
         let log = match before {
             None => Log::create(path, &columns)?,
             Some(before) => {
-                if let Some(what) = before.differs(&companion) {
-                    let what = format!("the log is one of another {what}: name another log");
+                if (&before.device, &before.columns) != (&companion.device, &companion.columns) {
+                    let what = "the log is one of another device: name another log";
                     return Err(config.refused("log", what));
                 }
+                before.refuse(config, &plan.follows, plan.end_s, &log::rows_of(path))?;
                 let log = Log::reopen(path)?;
                 logged = replay(&mut plan, log.rows())?;
-                let over = plan.end_s.zip(logged.as_ref());
-                let over = over.filter(|(end, last)| last.time - before.origin_s >= end - EARLY);
-                if let Some((end, _)) = over {
-                    let what = format!("nothing is left to run: the log goes to the end, {end} s");
-                    return Err(config.refused("log", what));
-                }
                 companion = before;
                 log
             }
         };
+        companion.follows = Some(plan.follows.clone());
         companion.learner = plan.learner.map(|learner| learner.name().to_owned());
         companion.bytes = None;
         companion.end = None;
@@ -327,7 +320,10 @@ impl Session {
         let (mut end, answer) = match answer {
             Ok(answer) => {
                 let done = self.unmoved(at.number, dt, output).or(self.done(elapsed));
-                (self.ends(sample.time, output, &answer).or(done), answer)
+                (
+                    self.ends((sample.time, dt), output, &answer).or(done),
+                    answer,
+                )
             }
             Err(error) => (Some(End::Failed(error.to_string())), Answer::nothing()),
         };
@@ -349,7 +345,7 @@ impl Session {
             self.sent.pop_front();
         }
         let learner = self.learner();
-        let first = self.logged.is_none();
+        let first = self.last.is_none();
         let row = answer.row(
             &self.plan.header,
             &sample,
@@ -363,10 +359,9 @@ impl Session {
             Err(error) => end = end.or_else(|| Some(End::Log(error.to_string()))),
         }
         self.logged = Some(at);
-        if self.plan.mode == Mode::Control {
-            self.counts.missing += u64::from(output.is_nan());
-            self.counts.rejected += u64::from(answer.status.rejected && output.is_finite());
-        }
+        self.counts.missing += u64::from(output.is_nan());
+        let rejected = self.plan.mode == Mode::Control && answer.status.rejected;
+        self.counts.rejected += u64::from(rejected && output.is_finite());
         if answer.learner_used {
             self.learned += 1;
         }
@@ -485,7 +480,7 @@ impl Session {
     }
 
     /// How the run ends with a sample before all was run.
-    fn ends(&mut self, time: f64, output: f64, answer: &Answer) -> Option<End> {
+    fn ends(&mut self, (time, dt): (f64, f64), output: f64, answer: &Answer) -> Option<End> {
         let plan = &self.plan;
         let tolerance = 0.01 * plan.header.dt;
         if output.is_finite() {
@@ -502,8 +497,10 @@ impl Session {
             outside((low, high)) && 2.0 * (answer.reference - output).abs() > high - low
         };
         self.astray_s = match plan.reach.is_some_and(astray) {
-            true => self.astray_s + plan.header.dt,
-            false => (self.astray_s - plan.header.dt).max(0.0),
+            true => self.astray_s + dt,
+            // No reading says nothing.
+            false if output.is_nan() => self.astray_s,
+            false => (self.astray_s - dt).max(0.0),
         };
         let stuck = plan
             .controller

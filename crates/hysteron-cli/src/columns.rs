@@ -3,7 +3,6 @@
 use crate::args;
 use crate::terminal::{Result, say};
 use hysteron::{Columns, TablePreview, TableReader};
-use hysteron_files::shell_word;
 use std::path::Path;
 
 /// Names of columns, some of which may not have been given.
@@ -44,6 +43,8 @@ pub(crate) struct Named {
     pub(crate) output: String,
     pub(crate) time: Option<String>,
     load: Option<String>,
+    /// A load that the table has, and that is not taken.
+    pub(crate) unused_load: Option<String>,
 }
 
 impl Named {
@@ -58,6 +59,7 @@ impl Named {
                 output: output.into(),
                 time: owned(given.time),
                 load: owned(given.load),
+                unused_load: None,
             });
         }
         let refused = |why: &str| {
@@ -74,13 +76,8 @@ impl Named {
                 refused("the columns do not tell which is the input and the output").into(),
             );
         };
-        let unused = roles.load.filter(|_| given.load.is_none());
-        let unused = unused.map_or(String::new(), |load| {
-            let load = shell_word(&load);
-            format!(", and is not used: `--load {load}` fits a model that depends on it")
-        });
         say(format_args!(
-            "{}: {}{unused}",
+            "{}: {}",
             path.display(),
             roles.reasons.join("; ")
         ));
@@ -89,6 +86,7 @@ impl Named {
             output,
             time: roles.time,
             load: owned(given.load),
+            unused_load: roles.load.filter(|_| given.load.is_none()),
         })
     }
 

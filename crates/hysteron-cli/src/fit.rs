@@ -10,6 +10,7 @@ use hysteron::{
     Model, Preparation, Progress, RateDependence, Recording, Sign, Solver, Spacing, Step, Verdict,
     prior_of_fleet,
 };
+use hysteron_files::shell_word;
 use lines::to_text;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -27,6 +28,12 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let given = Given::of(&how.columns, how.quantities.load.as_deref());
     let named = Named::of(inputs[0], &given, &how.repair)?;
+    if let Some(load) = &named.unused_load {
+        let word = shell_word(load);
+        say(format_args!(
+            "`{load}` is not used: with --load {word} the model depends on it"
+        ));
+    }
     let columns = named.columns();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());

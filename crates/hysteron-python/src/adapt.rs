@@ -1,6 +1,6 @@
 //! `adapt`.
 
-use crate::choices::{STARTS, choice, learner, named, no_argument, start_of};
+use crate::choices::{ADAPT_STARTS, choice, learner, named, no_argument, start_of};
 use crate::convert::{result, to_python};
 use crate::error::Raise;
 use crate::inputs::recordings_of;
@@ -180,7 +180,7 @@ pub(crate) fn adapt_options(
     let mut options = AdaptOptions {
         learner: learner(method)?,
         start: match call {
-            "adapt" => choice("start", start, &STARTS)?,
+            "adapt" => choice("start", start, &ADAPT_STARTS)?,
             // A loop begins with all operators off or on.
             _ => start_of(start)?,
         },

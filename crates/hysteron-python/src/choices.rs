@@ -108,6 +108,14 @@ pub(crate) const STARTS: [(&str, Start); 5] = [
     ("unknown", Start::Unknown),
 ];
 
+/// Those of a model that adapts: nothing is found then.
+pub(crate) const ADAPT_STARTS: [(&str, Start); 4] = [
+    ("fitted", Start::Fitted),
+    ("off", Start::Off),
+    ("on", Start::On),
+    ("unknown", Start::Unknown),
+];
+
 /// The same before there is a model that starts somewhere.
 pub(crate) fn start_of(name: &str) -> PyResult<Start> {
     choice("start", name, &STARTS[1..])

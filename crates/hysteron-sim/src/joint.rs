@@ -9,6 +9,7 @@ use hysteron::control::{Gains, RelayTest, Scheme};
 use hysteron::{Error, Model, Result};
 use plant::{Outer, Plant, Reach};
 
+pub use plant::UNKNOWN;
 pub use target::{TargetLoop, usual_safety};
 
 /// Where the relay's two drives lie between the limits.

@@ -177,12 +177,17 @@ fn a_log_is_gone_on_with_by_the_same_run_only() {
     go(&short, false).0.unwrap();
     let before = std::fs::read(folder.path().join("run.csv")).unwrap();
     let (over, dry) = go(&short, true);
-    assert!(over.unwrap_err().contains("nothing is left"));
-    assert!(
-        dry.unwrap()
-            .iter()
-            .any(|line| line.contains("behind sample 20"))
-    );
+    for error in [over.unwrap_err(), dry.unwrap_err()] {
+        assert!(error.contains("nothing is left"), "{error}");
+    }
+    let options = Options {
+        resume: true,
+        ..Options::default()
+    };
+    let longer = config(&folder, PID, "simulated = 'spring'");
+    let lines = dry_run(&longer, &options).unwrap();
+    let after = "resumes   after sample 20, at 1 s".to_owned();
+    assert!(lines.contains(&after), "{lines:?}");
     model(&folder);
     let other = PID.replace("kind = 'pid'", "kind = 'inverse-pid', model = 'model.json'");
     let (refused, dry) = go(&other, true);

@@ -108,7 +108,8 @@ pub(crate) enum Command {
     #[command(after_help = "Example:\n\
         \x20 hysteron run bench.toml -o run.csv\n\n\
         Exit codes: 0 all was run; 1 it could not begin, or the controller failed; 2 wrong usage;\n\
-        3 no valid reading for lost_s; 4 the output was stuck; 5 the output was beyond its limits;\n\
+        3 no valid reading for lost_s; 4 the output was stuck; 5 the output was beyond its limits,\n\
+        or far beyond what the model reaches;\n\
         6 the device ended; 7 the line is gone; 8 the log cannot be written; 130 stopped.\n\
         Whatever ends a run, the drive is safe and the log is whole.")]
     Run(Run),

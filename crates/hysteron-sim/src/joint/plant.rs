@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 const OF_SIMC: f64 = 8.0;
 /// How many times later the plant is taken to be where nothing says how fast it is. A sampled loop
 /// should have 4 to 10 samples in its rise (Åström & Wittenmark 1997): slower things are unknown.
-const UNKNOWN: usize = 10;
+pub const UNKNOWN: usize = 10;
 /// Samples of the shortest simulated run, and of the longest.
 pub(super) const SHORTEST: usize = 600;
 const LONGEST: usize = 4800;

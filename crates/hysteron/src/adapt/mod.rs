@@ -254,9 +254,11 @@ fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(Start
             least = Some((error, start, output));
         }
     }
-    least
-        .map(|(_, start, output)| (start, output))
-        .ok_or_else(no_samples)
+    let (_, start, output) = least.ok_or_else(no_samples)?;
+    Ok(match start {
+        Start::Fitted if model.fitted().is_none() => (Start::Off, output),
+        _ => (start, output),
+    })
 }
 
 /// The outputs of a model that starts so in each recording.

@@ -80,7 +80,11 @@ pub(super) fn adapt(
         load: last.load(),
         from: last.told(),
     };
-    let last = offline.starts(last.model()?, start)?;
+    let last = match start {
+        // It was shifted with the axis.
+        Start::Fitted => last.model()?,
+        _ => offline.starts(last.model()?, start)?,
+    };
     Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
         start,

@@ -45,7 +45,7 @@ impl Model {
     pub(crate) fn starts(&self, changed: Self, start: Start) -> Result<Self> {
         match start {
             Start::Off => changed.with_start(None),
-            Start::Fitted if self.start.is_none() => changed.with_start(None),
+            Start::Fitted => changed.with_start(self.start.clone()),
             _ => changed.starting_from(&self.state_at(start)),
         }
     }

@@ -1,6 +1,7 @@
 //! Finds a channel that stands still while the other one moves.
 
-use crate::series::lost::{equal_runs, half_a_branch, held};
+use crate::series::lost::{are_set_points, equal_runs, half_a_branch, held};
+use crate::series::noise::noise;
 use crate::series::spread::{range, usual_span};
 use std::ops::Range;
 
@@ -22,6 +23,8 @@ const INSIDE: std::ops::RangeInclusive<f64> = 0.1..=0.9;
 const FAR_INSIDE: f64 = 0.5;
 /// A series repeats a reading at most so often where it has noise and no coarse steps.
 const SELDOM: f64 = 0.05;
+/// Less noise than this share of the range is none.
+const FINE: f64 = 1e-4;
 /// What is noise and no slow answer: the mean squared step, by twice the variance. It is 1 for white
 /// noise and near 0 for a smooth series (von Neumann 1941).
 const ROUGH: f64 = 0.25;
@@ -48,12 +51,23 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
     // Of readings that differ even at rest, equal ones are no rest.
     let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     let elsewhere = values.len() - count(&long);
-    let is_fine = (repeats + long.len() - count(&long)) as f64 <= SELDOM * elsewhere as f64;
+    let moving = || {
+        let is_long = |n: &usize| long.iter().any(|run| run.contains(n));
+        let others = (0..values.len()).filter(|n| !is_long(n)).map(|n| values[n]);
+        others.collect::<Vec<_>>()
+    };
+    let is_fine = (repeats + long.len() - count(&long)) as f64 <= SELDOM * elsewhere as f64
+        && noise(&moving()) >= FINE * (high - low);
     let far = |run: &Range<usize>| match is_fine && inside(run) {
         true => FAR_INSIDE,
         false => FAR,
     };
-    let (far, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(|run| moves_by(far(run), run));
+    let (far, rest): (Vec<_>, Vec<_>) = (0..long.len())
+        .partition(|&n| !are_set_points(&long, n) && moves_by(far(&long[n]), &long[n]));
+    let [far, rest] = [far, rest].map(|places| {
+        let runs = places.into_iter().map(|n: usize| long[n].clone());
+        runs.collect::<Vec<_>>()
+    });
     let others = values.len() - count(&far);
     let mut found = match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
         true => Vec::new(),
@@ -222,7 +236,7 @@ mod tests {
         // Without noise it may be what the material does.
         let mut plain = half.clone();
         plain[800..].fill(half[800]);
-        assert_eq!(frozen(&plain, &half), vec![800..2000]);
+        assert_eq!(frozen(&plain, &half), vec![]);
         // A drive that is off, while the actuator goes back.
         let mut off = input.clone();
         off[1000..].fill(0.0);
@@ -240,6 +254,16 @@ mod tests {
         let mut short = input.clone();
         short[1200..1260].fill(held);
         assert_eq!(frozen(&short, &input), vec![]);
+        // Set points among ramps, and an actuator that rings at each.
+        let set = |n: usize| [0.3, 0.8, 0.2, 0.6, 0.4][n / 40 % 5];
+        let ramps = |n: usize| if n < 800 { input[n] } else { set(n) };
+        let ramps: Vec<f64> = (0..1000).map(ramps).collect();
+        let rings = |n: usize| match n < 800 {
+            true => input[n],
+            false => set(n) + (1.0 - (n % 40) as f64 / 40.0) * (n as f64).cos(),
+        };
+        let rings: Vec<f64> = (0..1000).map(rings).collect();
+        assert_eq!(frozen(&ramps, &rings), vec![]);
         // A drive in steps, and an actuator that follows each.
         let steps: Vec<f64> = (0..2000).map(|n| f64::from(n / 200 % 3)).collect();
         let slow: Vec<f64> = (0..2000).map(|n| f64::from(n % 200)).collect();

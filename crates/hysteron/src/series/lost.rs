@@ -44,6 +44,14 @@ pub(crate) fn equal_runs(values: &[f64]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
+/// Whether one of these runs of equal values begins where another ends: they are set points, one
+/// after the other.
+pub(crate) fn are_set_points(runs: &[Range<usize>], n: usize) -> bool {
+    let after = n > 0 && runs[n - 1].end == runs[n].start;
+    let before = n + 1 < runs.len() && runs[n].end == runs[n + 1].start;
+    after || before
+}
+
 /// The samples over which `values` keeps exactly one value and then goes on elsewhere, or while
 /// the series that follows it, if any, moves. None in a series that often rests.
 pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>> {
@@ -69,7 +77,8 @@ pub(crate) fn held(values: &[f64], follower: Option<&[f64]>) -> Vec<Range<usize>
         })
     };
     let lost = |run: &Range<usize>| jumps(run, run.end) || is_left_behind(run);
-    let held: Vec<Range<usize>> = long.into_iter().filter(lost).collect();
+    let held = (0..long.len()).filter(|&n| !are_set_points(&long, n) && lost(&long[n]));
+    let held: Vec<Range<usize>> = held.map(|n| long[n].clone()).collect();
     // All samples that repeat the one before, also in short runs.
     let equal = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     let count: usize = held.iter().map(Range::len).sum();
