@@ -145,7 +145,7 @@ pub(crate) fn last(rows: &Path) -> Result<Option<At>> {
             time: value(row, "time")?,
         })
     };
-    Ok(lines.last().and_then(at))
+    Ok(lines.next_back().and_then(at))
 }
 
 /// Lets a controller run through the rows of a log, so that its model is where the actuator is and
