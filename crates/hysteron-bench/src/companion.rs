@@ -1,8 +1,8 @@
 //! The file beside a log: by it a later run knows the log, and goes on where it ended.
 
+use crate::at::{self, At};
 use crate::config::{Config, Mode};
 use crate::error::{Result, of_file};
-use crate::row::{self, At};
 use hysteron::Model;
 use hysteron_files::{AtomicFile, Own};
 use serde::{Deserialize, Serialize};
@@ -122,7 +122,7 @@ impl Companion {
             let what = format!("the log is one of another {what}: name another log");
             return Err(config.refused("log", what));
         }
-        let last = row::last(rows)?;
+        let last = at::last(rows)?;
         let over = |end: &f64| {
             last.is_some_and(|last| last.time - self.origin_s >= end - EARLY * end.abs())
         };

@@ -1,11 +1,11 @@
 //! What a run would do.
 
+use crate::at::At;
 use crate::companion::{Companion, Follows};
 use crate::config::{Config, Mode};
 use crate::error::Result;
 use crate::plan::Sources;
 use crate::protocol::ToDevice;
-use crate::row::At;
 use crate::summary::{Options, log_path};
 use crate::sweep::LEAST_S;
 use crate::{device, log};

@@ -9,10 +9,11 @@
 //! in it; `device` the ways to a device, `handshake` the first question; `play` what is due when;
 //! `plan` what a run does with the device that answered; `tune` gains from a model; `learner`
 //! learning beside the loop; `session` the run, `end` the ways that it can end, `summary` what it
-//! tells, `dry` what it would do; `log` the table, `row` what stands in it, `companion` what a later
+//! tells, `dry` what it would do; `log` the table, `at` where it stands, `row` what stands in it, `companion` what a later
 //! run needs.
 #![forbid(unsafe_code)]
 
+mod at;
 mod check;
 mod companion;
 mod config;

@@ -1,18 +1,12 @@
 //! A row of the log: a sample, and the answer to it.
 
-use crate::error::{Result, of_file};
+use crate::at::At;
+use crate::error::Result;
 use crate::plan::Plan;
 use crate::protocol::{Header, Sample};
 use hysteron::TableReader;
 use hysteron::control::LoopStatus;
 use std::path::Path;
-
-/// A sample as the log has it: numbers and times go on where an earlier run ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct At {
-    pub(crate) number: u64,
-    pub(crate) time: f64,
-}
 
 /// What a sample is answered with.
 #[derive(Debug, Clone, Copy)]
@@ -118,34 +112,6 @@ fn or_empty(value: f64) -> String {
         true => String::new(),
         false => value.to_string(),
     }
-}
-
-/// The last whole row of a log; `None` for a log without rows.
-///
-/// # Errors
-/// [`hysteron::Error::File`].
-pub(crate) fn last(rows: &Path) -> Result<Option<At>> {
-    let text = std::fs::read_to_string(rows).map_err(|source| of_file(rows, source))?;
-    let mut lines = text
-        .split_inclusive('\n')
-        .filter(|line| line.ends_with('\n'));
-    let names: Vec<&str> = lines
-        .next()
-        .unwrap_or_default()
-        .trim_end()
-        .split(',')
-        .collect();
-    let value = |row: &str, name: &str| {
-        let place = names.iter().position(|column| *column == name)?;
-        row.trim_end().split(',').nth(place)?.parse::<f64>().ok()
-    };
-    let at = |row: &str| {
-        Some(At {
-            number: value(row, "sample")? as u64,
-            time: value(row, "time")?,
-        })
-    };
-    Ok(lines.next_back().and_then(at))
 }
 
 /// Lets a controller run through the rows of a log, so that its model is where the actuator is and

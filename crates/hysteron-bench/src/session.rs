@@ -1,5 +1,6 @@
 //! The run: from the first question to the safe drive.
 
+use crate::at::At;
 use crate::companion::Companion;
 use crate::config::{Config, Mode};
 use crate::device::{self, Line, Received};
@@ -11,7 +12,7 @@ use crate::learner::Beside;
 use crate::log::{self, Log};
 use crate::plan::{Plan, Sources};
 use crate::protocol::{FromDevice, Sample, ToDevice, drive_text, opened};
-use crate::row::{Answer, At, columns, replay};
+use crate::row::{Answer, columns, replay};
 use crate::summary::{Options, Seen, Summary, log_path};
 use hysteron::control::Reading;
 use std::collections::VecDeque;

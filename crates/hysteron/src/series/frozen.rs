@@ -52,9 +52,10 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
     let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     let elsewhere = values.len() - count(&long);
     let moving = || {
-        let is_long = |n: &usize| long.iter().any(|run| run.contains(n));
-        let others = (0..values.len()).filter(|n| !is_long(n)).map(|n| values[n]);
-        others.collect::<Vec<_>>()
+        let ends = [0].into_iter().chain(long.iter().map(|run| run.end));
+        let starts = long.iter().map(|run| run.start).chain([values.len()]);
+        let parts = ends.zip(starts).map(|(from, to)| &values[from..to]);
+        parts.collect::<Vec<_>>().concat()
     };
     let is_fine = (repeats + long.len() - count(&long)) as f64 <= SELDOM * elsewhere as f64
         && noise(&moving()) >= FINE * (high - low);
