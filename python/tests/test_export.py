@@ -56,7 +56,7 @@ def test_fmu_of_a_controller(tmp_path):
     assert plain.name == "sf_Controller_MKP" and plain.inputs[1] == "measured"
     description = zipfile.ZipFile(path).read("modelDescription.xml").decode()
     assert 'stepSize="0.05"' in description
-    more = dict(gains=pyhysteron.Pid(1.0, 2.0), gate=0.1, filter_s=0.2, drive_range=(25, 75))
+    more = dict(gains=pyhysteron.control.Pid(1.0, integral_s=2.0), gate=0.1, filter_s=0.2, drive_range=(25, 75))
     full = MODEL.export_fmu(path, controller=True, dt=0.05, **more)
     assert full.token != plain.token
     description = zipfile.ZipFile(path).read("modelDescription.xml").decode()
