@@ -83,10 +83,12 @@ pub use hysteron_core::{
 };
 #[cfg(feature = "files")]
 pub use hysteron_files::Destination;
+#[cfg(feature = "data")]
+pub use identify::Chosen;
 pub use identify::{
-    AGAINST_INPUT, Auto, Candidates, Choice, Chosen, Dynamics, FIT_OPTIONS, Fit, FitOption,
-    FitOptions, LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, cross_validate,
-    excitation, left_out, plane_of, usual_start, way_against_input,
+    AGAINST_INPUT, Auto, Candidates, Choice, Dynamics, FIT_OPTIONS, Fit, FitOption, FitOptions,
+    LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, cross_validate, excitation,
+    left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, ConstantSummary, LoadSummary, ModelSummary, RecordingSummary, Series,

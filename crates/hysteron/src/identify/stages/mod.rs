@@ -21,6 +21,7 @@ mod undone;
 
 use latent::Heated;
 pub use spacing::SpacingShape;
+#[cfg(feature = "data")]
 pub(crate) use spacing::shape_of as spacing_shape;
 pub(crate) use undone::check_time;
 

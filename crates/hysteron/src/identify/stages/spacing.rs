@@ -7,7 +7,7 @@ use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::plane_of_all;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::sums::least_squares;
-use crate::model::{Model, Plane, Validation};
+use crate::model::{Plane, Validation};
 use crate::parallel;
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -44,7 +44,8 @@ fn shapes() -> impl Iterator<Item = SpacingShape> {
 
 /// The shape of a model's levels, by the recording that it was fitted to; `None` for equal
 /// distances.
-pub(crate) fn shape_of(model: &Model, recording: &Recording) -> Option<SpacingShape> {
+#[cfg(feature = "data")]
+pub(crate) fn shape_of(model: &crate::model::Model, recording: &Recording) -> Option<SpacingShape> {
     if model.spacing().is_empty() {
         return None;
     }
