@@ -105,8 +105,8 @@ impl Companion {
         }
     }
 
-    /// Refuses to go on with the rows of this log: where another drive is followed, or nothing is
-    /// left until `end_s`. Where it ends otherwise; `None` for a log without rows.
+    /// Refuses to go on with this log where the run is another one, or nothing is left of it until
+    /// `end_s`. Otherwise the last of its `rows`; `None` for a log without any.
     ///
     /// # Errors
     /// [`crate::Error::Config`], and [`hysteron::Error::File`].

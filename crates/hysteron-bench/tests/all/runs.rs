@@ -3,7 +3,7 @@
 use super::bench::{PID, bench, column, config, folder, plain, rows};
 use super::device::{DT, Fault, SAFE, start};
 use hysteron::{Delay, Model, Operator, Plane, Sign};
-use hysteron_bench::{Config, End, Options, dry_run};
+use hysteron_bench::{Config, End, Error, Options, Summary, dry_run};
 
 const RECORD: &str = "mode = 'record'\nlog = 'run.csv'\nlimits = { drive = [0, 8] }\n\
                       profile = { table = 'profile.csv' }\n";
@@ -156,19 +156,30 @@ fn an_output_far_beyond_the_model_ends_a_run_unless_limits_are_given() {
     }
 }
 
+/// What a run on a device comes to, which may go on with the log in the folder.
+fn gone_on(
+    folder: &tempfile::TempDir,
+    text: &str,
+    resume: bool,
+) -> (Result<Summary, Error>, Options, Config) {
+    let (address, served) = start(vec![]);
+    let config = config(folder, text, &format!("tcp = '{address}'"));
+    let options = Options {
+        resume,
+        ..Options::default()
+    };
+    let found = plain(&config, &options);
+    served.join().unwrap();
+    (found, options, config)
+}
+
 #[test]
 fn a_log_is_gone_on_with_by_the_same_run_only() {
     let folder = folder();
     let short = PID.replace("duration_s = 3", "duration_s = 1");
     let go = |text: &str, resume: bool| {
-        let (address, served) = start(vec![]);
-        let config = config(&folder, text, &format!("tcp = '{address}'"));
-        let options = Options {
-            resume,
-            ..Options::default()
-        };
-        let found = plain(&config, &options).map_err(|error| error.to_string());
-        served.join().unwrap();
+        let (found, options, config) = gone_on(&folder, text, resume);
+        let found = found.map_err(|error| error.to_string());
         (
             found,
             dry_run(&config, &options).map_err(|error| error.to_string()),
@@ -204,17 +215,7 @@ fn a_log_is_gone_on_with_by_the_same_run_only() {
 fn a_run_goes_on_where_it_ended() {
     let folder = folder();
     let text = PID.replace("duration_s = 3", "duration_s = 1");
-    let go = |text: &str, resume: bool| {
-        let (address, served) = start(vec![]);
-        let config = config(&folder, text, &format!("tcp = '{address}'"));
-        let options = Options {
-            resume,
-            ..Options::default()
-        };
-        let found = plain(&config, &options).unwrap();
-        served.join().unwrap();
-        found
-    };
+    let go = |text: &str, resume: bool| gone_on(&folder, text, resume).0.unwrap();
     assert_eq!(go(&text, false).samples, 20);
     let log = folder.path().join("run.csv");
     // A kill has left half a row.
