@@ -127,9 +127,10 @@ pub(crate) struct Stages {
     /// leaves it to --dynamics. Needs --time
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
-    /// What happens behind the operators in time: a ring, which is a resonance of the second order,
-    /// or a lag, which is of the first. `auto` looks for a ring, and for a lag, in recordings with
-    /// time and without a load, unless creep or a lag is asked for
+    /// What happens in time behind the operators: a ring, which is a resonance of the second order,
+    /// or a lag, which is of the first. `auto` looks for both, and for a thermal body in front of
+    /// the operators, in recordings with time and without a load, unless creep, a lag or a body is
+    /// asked for
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) dynamics: Dynamics,
     /// Output curve behind the operators: `auto` (where it predicts parts of the recordings left

@@ -39,6 +39,7 @@ pub(super) fn to_text(
     lines.extend(outliers_line(fit, model, recordings));
     let bare = model.latent() == 0.0;
     lines.extend(model.thermal.as_ref().map(|body| thermal_line(body, bare)));
+    lines.extend(model.fit.as_ref().and_then(unasked_line));
     lines.extend(latent_line(model));
     lines.extend(load_line(model));
     lines.extend(model.late_words());
@@ -245,6 +246,17 @@ fn latent_line(model: &Model) -> Option<String> {
         text::number(latent),
         text::number(with?),
         text::number(without?),
+    ))
+}
+
+/// What a body gains that nobody asked for.
+fn unasked_line(fit: &FitSummary) -> Option<String> {
+    Some(format!(
+        "a body looked for unasked: the error on what was left out is {:.2} % with it, {:.2} % \
+         without; power heats it, so of a current or a voltage give the square; --dynamics off looks \
+         for none",
+        fit.validation.as_ref()?.nrmse_percent,
+        fit.without_body()?
     ))
 }
 

@@ -46,6 +46,47 @@ struct Both {
     far: Shares,
 }
 
+/// The part of the way to what the experts know that the model goes at a sample between turning
+/// points. All of it would be feedback of each reading to the next drive, at any frequency: it
+/// shakes a resonance that the model does not have.
+const FOLLOWED: f64 = 0.25;
+
+/// A stroke counts as so many samples where it has more, and at least as this part of them while
+/// the input rests.
+const STROKE: f64 = 50.0;
+const RESTING: f64 = 0.1;
+
+/// How far the input has gone.
+#[derive(Debug, Clone)]
+struct Travel {
+    /// Since it turned.
+    now: f64,
+    /// In the two strokes before.
+    before: [f64; 2],
+}
+
+impl Travel {
+    fn new(levels: usize) -> Self {
+        Self {
+            now: 0.0,
+            before: [levels as f64; 2],
+        }
+    }
+
+    /// Goes on by a distance. What a sample counts for the stroke to come: errors along a branch are
+    /// alike, however densely it is sampled.
+    fn push(&mut self, distance: f64) -> f64 {
+        self.now += distance;
+        let [last, before] = self.before;
+        (STROKE * distance / last.max(before)).clamp(RESTING, 1.0)
+    }
+
+    fn turn(&mut self, least: f64) {
+        self.before = [self.now.max(least), self.before[0]];
+        self.now = 0.0;
+    }
+}
+
 /// Learners side by side, the one that learns nothing first.
 #[derive(Debug, Clone)]
 pub(super) struct Mixture {
@@ -65,6 +106,7 @@ pub(super) struct Mixture {
     weights: Vec<f64>,
     offset: f64,
     turning: Turning,
+    travel: Travel,
     tolerance: f64,
     /// A state for weights of the past.
     there: OperatorState,
@@ -112,6 +154,7 @@ impl Mixture {
             weights: model.weights().to_vec(),
             offset: level,
             turning: Turning::new(tolerance),
+            travel: Travel::new(model.plane().levels()),
             tolerance,
             there: state,
             frozen: false,
@@ -156,7 +199,9 @@ impl Mixture {
         if !measured.is_finite() {
             return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
         }
+        let from = state.position();
         let step = core.step(state, input)?;
+        let part = self.travel.push((state.position() - from).abs());
         let (mut outputs, mut outcomes, mut fell_silent) = (Vec::new(), Vec::new(), false);
         for expert in &mut self.experts {
             let Expert {
@@ -194,14 +239,16 @@ impl Mixture {
         if fell_silent {
             self.undo()?;
         } else if believed {
-            self.judge(state, &outputs, measured)?;
+            self.judge(state, &outputs, measured, part)?;
         }
         let turned = !self.frozen && self.turning.push(state.position()).is_some();
         if turned {
             self.turn()?;
         }
         if turned || !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
-            self.mix(core);
+            // What was forgotten is gone at once.
+            let whole = turned || fell_silent;
+            self.mix(core, if whole { 1.0 } else { FOLLOWED });
             core.rebase(state)?;
         }
         Ok(Learning {
@@ -213,15 +260,22 @@ impl Mixture {
     }
 
     /// Judges the experts by what they expected now, and by what they had expected of now.
-    fn judge(&mut self, state: &OperatorState, outputs: &[f64], measured: f64) -> Result<()> {
+    /// The latter count as `part` of a sample.
+    fn judge(
+        &mut self,
+        state: &OperatorState,
+        outputs: &[f64],
+        measured: f64,
+        part: f64,
+    ) -> Result<()> {
         let errors: Vec<f64> = outputs.iter().map(|y| measured - y).collect();
-        self.shares.near.judge(&errors);
+        self.shares.near.judge(&errors, 1.0);
         self.there.clone_from(state);
         let there = &mut self.there;
         let late = self.experts.iter();
         let late = late.map(|expert| Ok(measured - expert.kept[0].output(there)?));
         let late: Vec<f64> = late.collect::<Result<_>>()?;
-        self.shares.far.judge(&late);
+        self.shares.far.judge(&late, part);
         Ok(())
     }
 
@@ -236,6 +290,7 @@ impl Mixture {
 
     /// The input has turned: what is known now is kept for a judgement in strokes to come.
     fn turn(&mut self) -> Result<()> {
+        self.travel.turn(self.tolerance);
         self.refit_all()?;
         self.extrapolate()?;
         for Expert { learns, kept, .. } in &mut self.experts {
@@ -265,15 +320,21 @@ impl Mixture {
         self.experts[trend].set(weights, offset)
     }
 
-    /// Writes the mean of the experts to `core`, unless its weights cannot be summed.
-    fn mix(&mut self, core: &mut Core) {
+    /// Takes `part` of the way to the mean of the experts, and writes that to `core`, unless its
+    /// weights cannot be summed.
+    fn mix(&mut self, core: &mut Core, part: f64) {
         let shares = &self.shares.far;
-        let offset = shares.mean(self.experts.iter().map(|expert| expert.learns.level()));
+        let on = |from: f64, to: f64| from + part * (to - from);
+        let level = shares.mean(self.experts.iter().map(|expert| expert.learns.level()));
+        let offset = on(self.offset, level);
         let each = self.experts.iter().map(|expert| expert.learns.weights());
         let each: Vec<Vec<f64>> = each.collect();
         let mean = |n: usize| shares.mean(each.iter().map(|weights| weights[n]));
         // Rounding may take a mean of zeros and small numbers below zero.
-        let weights: Vec<f64> = (0..self.weights.len()).map(|n| mean(n).max(0.0)).collect();
+        let weights = self.weights.iter().enumerate();
+        let weights: Vec<f64> = weights
+            .map(|(n, weight)| on(*weight, mean(n)).max(0.0))
+            .collect();
         if core.set_weights(&weights).is_ok() {
             (self.weights, self.offset) = (weights, offset);
         }
@@ -357,14 +418,14 @@ impl Mixture {
         if let (Some((_, trend)), Some((weights, offset))) = (self.trend, kept) {
             self.experts[trend].set(weights, offset)?;
         }
-        self.mix(core);
+        self.mix(core, 1.0);
         Ok(())
     }
 
     pub(super) fn refit(&mut self, core: &mut Core) -> Result<bool> {
         let changed = self.refit_all()?;
         if changed {
-            self.mix(core);
+            self.mix(core, 1.0);
         }
         Ok(changed)
     }

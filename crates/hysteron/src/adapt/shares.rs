@@ -64,9 +64,9 @@ impl Shares {
         first + others.map(|(v, y)| v * (y - first)).sum::<f64>()
     }
 
-    /// Gives the shares anew after the predictors had these `errors`. Errors that are not finite
-    /// count as the largest.
-    pub(super) fn judge(&mut self, errors: &[f64]) {
+    /// Gives the shares anew after the predictors had these `errors`, which count as so many samples
+    /// as `part` says, at most one. Errors that are not finite count as the largest.
+    pub(super) fn judge(&mut self, errors: &[f64], part: f64) {
         // What is large beside the best is bad, be it usually the best or now. After a jump, or at
         // a spike, all are far off, and the nearest is the measure.
         let least = |squares: &mut dyn Iterator<Item = f64>| squares.fold(f64::INFINITY, f64::min);
@@ -77,27 +77,29 @@ impl Shares {
             square if square.is_finite() => square,
             _ => CAP,
         };
-        let losses = errors.iter().map(|&error| RATE * capped(error, best));
+        let losses = errors
+            .iter()
+            .map(|&error| RATE * part * capped(error, best));
         let losses: Vec<f64> = losses.collect();
-        self.update(&losses);
-        self.seen = (self.seen + 1.0).min(MEMORY);
+        self.update(&losses, GIVEN * part);
+        self.seen = (self.seen + part).min(MEMORY);
         for (usual, &error) in self.usual.iter_mut().zip(errors) {
             let own = usual.max(self.floor);
             let square = own * capped(error, own);
-            *usual += (square - *usual) / self.seen;
+            *usual += (square - *usual) * (part / self.seen);
         }
     }
 
-    /// The step of *fixed share*.
-    fn update(&mut self, losses: &[f64]) {
+    /// The step of *fixed share*, which gives so much to all alike.
+    fn update(&mut self, losses: &[f64], given: f64) {
         // Only differences count; so no share underflows together with all others.
         let least = losses.iter().copied().fold(f64::INFINITY, f64::min);
         let pairs = self.shares.iter_mut().zip(losses);
         pairs.for_each(|(share, loss)| *share *= (least - loss).exp());
         let sum: f64 = self.shares.iter().sum();
-        let given = GIVEN / self.shares.len() as f64;
+        let each = given / self.shares.len() as f64;
         for share in &mut self.shares {
-            *share = (1.0 - GIVEN) * *share / sum + given;
+            *share = (1.0 - given) * *share / sum + each;
         }
     }
 }
@@ -138,7 +140,7 @@ mod tests {
                         };
                 }
                 changing = best.iter().copied().fold(f64::INFINITY, f64::min);
-                shares.update(&losses);
+                shares.update(&losses, GIVEN);
             }
             // Rounding: a few hundred sums of a few products.
             assert!(mixed <= changing + 1e-9, "{mixed} {changing}");
@@ -170,7 +172,7 @@ mod tests {
                     false => rng.random_range(-1.0..1.0),
                 };
                 let errors: Vec<f64> = (0..count).map(|_| error()).collect();
-                shares.judge(&errors);
+                shares.judge(&errors, 1.0);
                 let sum: f64 = shares.all().iter().sum();
                 assert!((sum - 1.0).abs() < 1e-12, "{sum}");
                 let least = GIVEN / count as f64;

@@ -165,6 +165,7 @@ impl fmt::Display for Words<'_> {
             spacing,
             delay,
             rings,
+            heated,
         } = self.0;
         write!(to, "levels {levels}, smoothness ")?;
         match smooth {
@@ -188,6 +189,7 @@ impl fmt::Display for Words<'_> {
             1 => write!(to, ", a delay of 1 sample")?,
             delay => write!(to, ", a delay of {delay} samples")?,
         }
-        write!(to, "{}", if *rings { ", with a resonance" } else { "" })
+        to.write_str(if *rings { ", with a resonance" } else { "" })?;
+        to.write_str(if *heated { ", with a thermal body" } else { "" })
     }
 }

@@ -26,6 +26,8 @@ pub struct Chosen {
     pub delay: usize,
     /// Whether a resonance was found. Then each fit looks for its own.
     pub rings: bool,
+    /// Whether a thermal body was found that nobody asked for. Then each fit finds its own.
+    pub heated: bool,
 }
 
 impl Chosen {
@@ -42,6 +44,7 @@ impl Chosen {
             spacing: spacing_shape(model, recording),
             delay: model.delay().samples(),
             rings: fit.is_some_and(|fit| fit.other.contains_key("ring")),
+            heated: fit.is_some_and(|fit| fit.without_body().is_some()),
         }
     }
 
@@ -84,8 +87,11 @@ impl Fit<'_> {
             None => fit = fit.spacing(Spacing::Uniform),
             shape => fit.shape = shape,
         }
+        if chosen.heated {
+            fit.thermal = Thermal::Auto;
+        }
         // A body and a dead time change places, so the dead time is looked for again.
-        if self.options.delay == Choice::Auto && self.thermal == Thermal::None {
+        if self.options.delay == Choice::Auto && fit.thermal == Thermal::None {
             fit = fit.delay(chosen.delay);
         }
         if !chosen.rings {

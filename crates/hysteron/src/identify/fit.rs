@@ -5,12 +5,12 @@ use crate::identify::choose::start::{at_rest, usual_start};
 use crate::identify::choose::{Open, is_worth};
 use crate::identify::delay;
 use crate::identify::doubt::sessions::widen;
-use crate::identify::kept;
 use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing, Thermal};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked, SpacingShape};
 use crate::identify::weights::problem::{check_gram, check_options};
+use crate::identify::{heated, kept};
 use crate::model::{Delay, Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -284,7 +284,9 @@ impl<'a> Fit<'a> {
 
     /// What is looked for behind the operators in recordings with time: by default a ring, a
     /// resonance of the second order, where the recordings excite one, else a lag. It is taken only
-    /// if it predicts parts of them that were left out. Recordings with a load get none.
+    /// if it predicts parts of them that were left out. By default a thermal body in front of the
+    /// operators is looked for, too ([`FitSummary::without_body`]), where what was left out is
+    /// predicted to no better than 1 % of the range. Recordings with a load get none.
     #[must_use]
     pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
         self.options.dynamics = dynamics;
@@ -378,7 +380,9 @@ impl<'a> Fit<'a> {
             return Err(Error::Fit(what.to_owned()).remedied(remedy));
         }
         let (mut model, delay) = match self.options.delay {
-            Choice::Auto if !self.options.asks_after() => self.delayed(recordings)?,
+            Choice::Auto if !self.options.asks_after() => {
+                heated::or_cold(self, recordings, self.delayed(recordings)?)?
+            }
             Choice::Auto => (self.acting(recordings)?, Delay::NONE),
             Choice::Fixed(samples) => {
                 let delay = delay::fixed(samples, recordings)?;
@@ -392,7 +396,7 @@ impl<'a> Fit<'a> {
     /// The model, and the dead time before it, where the whole model is better with it than without
     /// it on what was left out, or is about as good as one with a stage that comes late in its place.
     /// A coarse grid takes a narrow loop for a dead time.
-    fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
+    pub(super) fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         let at_once = self.acting(recordings)?;
         // A body and a dead time change places, so what is behind the body tells.
         let behind: Cow<'_, [Recording]> = match self.thermal {

@@ -5,7 +5,7 @@ use crate::identify::changed::on_grid;
 use crate::identify::history::{self, find_start};
 use crate::identify::options::FitOptions;
 use crate::identify::rest::after;
-use crate::model::{FitSummary, Model, Start};
+use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::recording::{Recording, one_speed};
 use crate::series::{Errors, different_branches};
 use serde_json::json;
@@ -28,7 +28,7 @@ pub(super) fn with_start(
         Start::Off | Start::Fitted => return model.with_start(None),
         Start::On => {
             let on = model.saturated();
-            return model.starting_from(&on);
+            return at_first(model.starting_from(&on)?, recordings);
         }
         Start::Rest => {
             let inputs = options.rest.unwrap_or_default();
@@ -36,7 +36,7 @@ pub(super) fn with_start(
             let rested = after(&model, seen)?;
             let mut model = match rested == model.off() {
                 true => model.with_start(None)?,
-                false => model.starting_from(&rested)?,
+                false => at_first(model.starting_from(&rested)?, recordings)?,
             };
             if let Some(fit) = &mut model.fit {
                 fit.other.insert("rest".into(), json!(inputs));
@@ -68,6 +68,20 @@ pub(super) fn with_start(
         fit.other.insert("start_found".into(), said);
     }
     Ok(best)
+}
+
+/// The model with its start moved to the first input of the first recording: an inverse and a loop
+/// begin there, as the actuator did. Recordings that begin elsewhere may lead to other branches; if
+/// they then err more, the start stays as it was.
+fn at_first(model: Model, recordings: &[Recording]) -> Result<Model> {
+    let first = recordings[0].part(0..1);
+    let around = Surroundings::from_recording(&model, &first);
+    let seen = model.seen(&first.input, around)?;
+    let mut state = model.start();
+    model.operators().step(&mut state.operators, seen[0])?;
+    let moved = model.clone().starting_from(&state)?;
+    let worse = squares(&moved, recordings)? > squares(&model, recordings)?;
+    Ok(if worse { model } else { moved })
 }
 
 /// The sum of the squared errors from the start that the model keeps.

@@ -104,8 +104,9 @@ impl From<Auto> for Thermal {
 /// What is looked for behind the operators in recordings with time, beside creep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dynamics {
-    /// A ring, where the recordings excite one; else a lag, where it predicts what was left out. Nothing where creep or a lag is asked for, or where there is a load; no lag
-    /// behind a thermal body.
+    /// A ring, where the recordings excite one; else a lag, where it predicts what was left out. Or
+    /// a thermal body in front of the operators, where the whole model is better with it. Nothing
+    /// where creep or a lag is asked for, or where there is a load; no lag behind a thermal body.
     Auto,
     /// Nothing.
     #[default]

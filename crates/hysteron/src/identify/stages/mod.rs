@@ -20,6 +20,7 @@ mod spacing;
 mod undone;
 
 use latent::Heated;
+pub(crate) use search::step_of;
 pub use spacing::SpacingShape;
 #[cfg(feature = "data")]
 pub(crate) use spacing::shape_of as spacing_shape;

@@ -126,7 +126,7 @@ pub(super) struct Search<'a> {
 }
 
 /// The mean sampling step; endless without a time.
-pub(super) fn step_of(recording: &Recording) -> f64 {
+pub(crate) fn step_of(recording: &Recording) -> f64 {
     let steps = recording.len().max(2).saturating_sub(1) as f64;
     let time = recording.time.as_ref().map(|time| range(time));
     time.map_or(f64::INFINITY, |(start, end)| (end - start) / steps)
