@@ -2,7 +2,7 @@
 //! what its inverse makes that wire do.
 
 use hysteron::control::{Device, SimulatedPlant};
-use hysteron::{Fit, FitOptions, Model, Policy, Recording, Surroundings, Thermal};
+use hysteron::{Dynamics, Fit, FitOptions, Model, Policy, Recording, Surroundings, Thermal};
 use hysteron_sim::plant::{LatentWirePlant, LatentWirePlantOptions};
 
 const DT: f64 = 0.05;
@@ -149,4 +149,21 @@ fn a_wire_that_binds_nothing_gets_no_heat() {
     assert_eq!(model.latent(), 0.0);
     let tried = &model.fit.unwrap().other["thermal"];
     assert!(tried.get("latent").is_none(), "{tried}");
+}
+
+/// Nobody asked for a body. Simulated.
+#[test]
+fn a_fit_without_options_finds_the_body() {
+    let recordings = experiment(LatentWirePlantOptions::default());
+    let [found, none] = [Dynamics::Auto, Dynamics::Off].map(|dynamics| {
+        let fit = Fit::new().bootstrap(0).dynamics(dynamics);
+        fit.run(&recordings).unwrap()
+    });
+    assert!(found.thermal.is_some() && none.thermal.is_none());
+    let fit = found.fit.as_ref().unwrap();
+    let left_out = fit.validation.as_ref().unwrap().nrmse_percent;
+    let without = fit.without_body().unwrap();
+    let [with, cold] = [&found, &none].map(predicted);
+    println!("left out {left_out:.2} and {without:.2} %, held out {with:.2} and {cold:.2} %");
+    assert!(left_out < 0.5 * without && with < 0.5 * cold);
 }

@@ -1,6 +1,10 @@
 //! The plants whose physics no model here shares, under control.
 
-use hysteron::Progress;
+use hysteron::control::{
+    Compensator, Controller, Device, Reading, Reference, Scheme, SimulatedPlant,
+};
+use hysteron::{AdaptOptions, Fit, FitOptions, Model, Progress, Recording};
+use hysteron_sim::plant::{BoucWenPlant, BoucWenPlantOptions};
 use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 
 fn rmse(found: &Comparison, kind: Kind, window: &str) -> f64 {
@@ -48,6 +52,85 @@ fn what_learns_follows_a_hysteresis_that_is_no_sum_of_operators() {
         errors[2] < 0.5 * errors[0] && errors[2] < 0.2 * errors[1],
         "{errors:?}"
     );
+}
+
+/// A stage that swings at an eighth of the sampling rate.
+fn swinging(seed: u64) -> BoucWenPlant {
+    let options = BoucWenPlantOptions {
+        resonance_hz: 120.0,
+        delay_s: 0.0,
+        seed,
+        ..BoucWenPlantOptions::default()
+    };
+    BoucWenPlant::new(&options).unwrap()
+}
+
+const STEP_S: f64 = 0.001;
+
+/// A model of the stage, from strokes so slow that it does not swing.
+fn slow_model() -> Model {
+    let mut stage = swinging(1);
+    let wave = |n: i32| {
+        let turn = std::f64::consts::TAU * f64::from(n) / 1000.0;
+        (1.0 - turn.cos()) * 50.0 * (1.0 - f64::from(n) / 6000.0)
+    };
+    let input: Vec<f64> = (0..6000).map(wave).collect();
+    let output = input.iter().map(|&drive| {
+        stage.write(drive);
+        stage.advance(STEP_S);
+        stage.read().output
+    });
+    let recording = Recording::new(input.clone(), output.collect()).unwrap();
+    let options = FitOptions {
+        levels: 14,
+        smooth: 1e-6.into(),
+        ..FitOptions::plain()
+    };
+    Fit::from(options).run(&recording).unwrap()
+}
+
+/// RMS error after the first quarter, of strokes of 8 um that last so many samples.
+fn followed(compensator: Compensator, period: f64, seed: u64) -> f64 {
+    let scheme = Scheme {
+        compensator: Some(compensator),
+        ..Scheme::new(STEP_S, (0.0, 100.0))
+    };
+    let (mut controller, mut stage) = (Controller::new(scheme).unwrap(), swinging(seed));
+    let (mut squares, samples) = (0.0, 2000);
+    for n in 0..samples {
+        let turn = std::f64::consts::TAU * f64::from(n) / period;
+        let wanted = 6.0 - 4.0 * turn.cos() * (f64::from(n) / 100.0).min(1.0);
+        let reading = Reading {
+            output: stage.read().output,
+            input: None,
+        };
+        let reference = Reference {
+            output: wanted,
+            heading: None,
+        };
+        let action = controller.step(reference, reading).unwrap();
+        stage.write(action.drive);
+        stage.advance(STEP_S);
+        if n >= samples / 4 {
+            squares += (stage.truth().output - wanted).powi(2);
+        }
+    }
+    (squares / f64::from(samples)).sqrt()
+}
+
+/// The learner is never told of the resonance, nor the model. Simulated.
+#[test]
+fn what_learns_does_not_shake_a_stage_that_swings() {
+    let model = slow_model();
+    for (seed, period) in [(1, 200.0), (2, 150.0), (3, 400.0), (4, 1000.0)] {
+        let learner = AdaptOptions::default().adaptive(&model).unwrap();
+        let learner = Compensator::shadowed(&model, Compensator::adaptive(learner)).unwrap();
+        let [fixed, adaptive] = [Compensator::fixed(&model).unwrap(), learner]
+            .map(|compensator| followed(compensator, period, seed));
+        println!("{period} samples: {fixed:.3} {adaptive:.3} um");
+        // What it learns of the noise is small beside what creeps.
+        assert!(adaptive < 1.05 * fixed, "{period}: {fixed} {adaptive}");
+    }
 }
 
 #[test]

@@ -365,6 +365,25 @@ impl Adaptive {
         self.wanted.clone_from(&self.state);
     }
 
+    /// As [`Adaptive::solve_from`]. The targets `after` this one are known, for a model with a
+    /// thermal body.
+    ///
+    /// # Errors
+    /// As [`Adaptive::solve`].
+    pub(crate) fn solve_ahead(
+        &self,
+        state: &mut State,
+        wanted: Wanted,
+        after: &[Wanted],
+    ) -> Result<Solution<f64>> {
+        if after.is_empty() {
+            return self.solve_from(state, wanted);
+        }
+        let model = self.model()?;
+        model.operators().core.rebase(&mut state.operators)?;
+        model.inverse()?.step_ahead(state, wanted, after)
+    }
+
     /// As [`Adaptive::solve`], from a `state` of the caller. It must be a state of this model,
     /// which may have had other weights at that time.
     ///

@@ -49,12 +49,12 @@ struct Both {
 /// The part of the way to what the experts know that the model goes at a sample between turning
 /// points. All of it would be feedback of each reading to the next drive, at any frequency: it
 /// shakes a resonance that the model does not have.
-const FOLLOWED: f64 = 0.25;
+const FOLLOWED: f64 = 1.0 / 3.0;
 
 /// A stroke counts as so many samples where it has more, and at least as this part of them while
 /// the input rests.
 const STROKE: f64 = 50.0;
-const RESTING: f64 = 0.1;
+const RESTING: f64 = 0.3;
 
 /// How far the input has gone.
 #[derive(Debug, Clone)]

@@ -61,6 +61,15 @@ impl Kind {
         }
     }
 
+    /// Whether the drive heats a body, which has to be driven ahead of the reference.
+    fn is_heated(&self) -> bool {
+        match self {
+            Self::Fixed { model, .. } => model.thermal.is_some(),
+            Self::Adaptive(adaptive) => adaptive.offline().thermal.is_some(),
+            Self::Load(_) | Self::Shadow(_) => false,
+        }
+    }
+
     fn solve_from(
         &self,
         from: &mut State,
@@ -69,7 +78,7 @@ impl Kind {
     ) -> Result<Solution<f64>> {
         match self {
             Self::Fixed { model, .. } => model.inverse()?.step_ahead(from, wanted, after),
-            Self::Adaptive(adaptive) => adaptive.solve_from(from, wanted),
+            Self::Adaptive(adaptive) => adaptive.solve_ahead(from, wanted, after),
             Self::Load(adaptive) => adaptive.solve_from(from, wanted),
             Self::Shadow(shadow) => shadow.used().kind.solve_from(from, wanted, after),
         }
@@ -340,8 +349,8 @@ impl Compensator {
 
     /// Finds the input that gives `target`, starting from the last input asked for. The heading of
     /// the target is used by *anticipate*. Reversals of the target up to `tolerance` are not
-    /// followed. `next` are the targets after this one, each after the time `dt`, for a fixed model
-    /// with a thermal body.
+    /// followed. `next` are the targets after this one, each after the time `dt`, for a model with a
+    /// thermal body.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite.
@@ -380,7 +389,7 @@ impl Compensator {
         };
         let after: Vec<Wanted> =
             match &self.kind {
-                Kind::Fixed { model, .. } if model.thermal.is_some() => {
+                kind if kind.is_heated() => {
                     let policy = match heading {
                         Some(_) => Policy::Anticipate,
                         None => Policy::Hold,

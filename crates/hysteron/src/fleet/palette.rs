@@ -177,6 +177,7 @@ mod tests {
             spacing: None,
             delay: 0,
             rings: false,
+            heated: false,
         }
     }
 

@@ -1,7 +1,7 @@
 //! A controller that is told the reference ahead: the drive starts early enough.
 
 use hysteron::control::{Compensator, Controller, Reading, Reference, Scheme};
-use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign};
+use hysteron::{AdaptOptions, FirstOrder, Model, Operator, Plane, Sample, Sign};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -30,9 +30,9 @@ fn wire(rng: &mut ChaCha8Rng) -> Model {
     model
 }
 
-fn controller(model: &Model) -> Controller {
+fn controller(compensator: Compensator) -> Controller {
     let scheme = Scheme {
-        compensator: Some(Compensator::fixed(model).unwrap()),
+        compensator: Some(compensator),
         ..Scheme::new(DT, (0.0, 1.0))
     };
     Controller::new(scheme).unwrap()
@@ -52,7 +52,16 @@ fn reference(rng: &mut ChaCha8Rng, model: &Model) -> Vec<f64> {
 
 /// RMS error in shares of the range, and the drives. The plant is the model itself.
 fn follow(model: &Model, reference: &[f64], ahead: usize) -> (f64, Vec<f64>) {
-    let (mut controller, mut plant) = (controller(model), model.start());
+    follow_by(Compensator::fixed(model).unwrap(), model, reference, ahead)
+}
+
+fn follow_by(
+    compensator: Compensator,
+    model: &Model,
+    reference: &[f64],
+    ahead: usize,
+) -> (f64, Vec<f64>) {
+    let (mut controller, mut plant) = (controller(compensator), model.start());
     let (mut output, mut squares, mut drives) = (model.output_range().0, 0.0, Vec::new());
     for (n, &target) in reference.iter().enumerate() {
         let next: Vec<f64> = reference[n + 1..].iter().take(ahead).copied().collect();
@@ -106,6 +115,22 @@ fn whoever_sees_ahead_errs_less_and_stays_within_the_drives() {
 }
 
 #[test]
+fn a_model_that_learns_sees_ahead_too() {
+    let (mut blind, mut seeing) = (0.0, 0.0);
+    for seed in 0..10 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = wire(&mut rng);
+        let reference = reference(&mut rng, &model);
+        let [without, with] = [0, 40].map(|ahead| {
+            let learner = AdaptOptions::default().adaptive(&model).unwrap();
+            follow_by(Compensator::adaptive(learner), &model, &reference, ahead).0
+        });
+        (blind, seeing) = (blind + without, seeing + with);
+    }
+    assert!(seeing < 0.9 * blind, "{seeing} against {blind}");
+}
+
+#[test]
 fn a_reference_that_rests_needs_no_preview() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let model = wire(&mut rng);
@@ -118,7 +143,10 @@ fn a_reference_that_rests_needs_no_preview() {
 fn a_target_ahead_that_is_no_number_changes_nothing() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let model = wire(&mut rng);
-    let (mut one, mut other) = (controller(&model), controller(&model));
+    let (mut one, mut other) = (
+        controller(Compensator::fixed(&model).unwrap()),
+        controller(Compensator::fixed(&model).unwrap()),
+    );
     let reading = Reading {
         output: 1.0,
         input: None,
