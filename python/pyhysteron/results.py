@@ -339,7 +339,7 @@ class HeldOut(_Result):
     rivals : tuple of RivalErrors
         Of a straight line and of interpolation.
     without_dynamics : bool
-        Whether neither a dead time, a ring nor a lag was looked for, because more than the end of
+        Whether no dead time, ring, lag or body was looked for, because more than the end of
         a recording was held out.
     at_end : bool
         Whether a share of the branches was held out at the end, and not spread over each recording.

@@ -82,7 +82,7 @@ use pyo3::types::{PyDict, PySequence, PyString};
 ///     What happens behind the operators in time. 'auto': a ring, which is a resonance of the second
 ///     order, where `time` is given and the recording excites one that predicts parts left out, or
 ///     a lag, or a thermal body in front of the operators; nothing where there is a load, or
-///     `creep` or `lag` is asked for. 'lag' as ``lag='auto'``.
+///     `creep`, `lag` or `thermal` is asked for. 'lag' as ``lag='auto'``.
 ///     'ring': the best ring, excited or not; needs `time`.
 /// curve : int, 'auto' or 'off'
 ///     Pieces of an output curve behind the operators, up to 100. 'auto' takes a curve only where it

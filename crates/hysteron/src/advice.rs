@@ -73,7 +73,7 @@ pub enum Advice {
         /// Number of combinations of weights that the data determine; `None` without confidence.
         rank: Option<usize>,
     },
-    /// Neither a dead time, a ring nor a lag was looked for, because more than the end of a
+    /// No dead time, ring, lag or body was looked for, because more than the end of a
     /// recording was held out.
     NoDynamics,
     /// The first input does not determine the state of some operators, and all of these were taken
@@ -160,7 +160,7 @@ impl fmt::Display for Advice {
                 )
             }
             Self::NoDynamics => f.write_str(
-                "neither a dead time, a ring nor a lag was looked for: they need every sample \
+                "no dead time, ring, lag or body was looked for: they need every sample \
                  before a row, and more than the end was held out",
             ),
             Self::OpenStart { operators } => write!(

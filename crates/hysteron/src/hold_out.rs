@@ -21,7 +21,7 @@ pub struct HeldOut {
     pub model: Errors,
     /// Errors of simple predictors, fitted to the same samples as the model.
     pub rivals: Vec<RivalErrors>,
-    /// Whether neither a dead time, a ring nor a lag was looked for, because more than the end of a
+    /// Whether no dead time, ring, lag or body was looked for, because more than the end of a
     /// recording was held out.
     pub without_dynamics: bool,
     /// Whether a share of the branches was held out at the end ([`Recording::split_end`]), and not

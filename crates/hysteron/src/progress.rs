@@ -1,6 +1,7 @@
 //! Progress reports of long calls, and the way to cancel them.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use std::sync::{Mutex, PoisonError};
 
 /// A callback for the progress of long work. It may cancel the work by returning an error.
 ///
@@ -37,6 +38,30 @@ impl<'a> Progress<'a> {
     /// The error that the callback returns.
     pub fn tell(&self, what: &'static str, share: f64) -> Result<()> {
         self.0.map_or(Ok(()), |report| report(what, share))
+    }
+}
+
+/// Does `work` of which parts may fail. What the callback of `progress` returned ends all of it,
+/// and is not taken for a part that fails.
+///
+/// # Errors
+/// That of the callback, or else that of `work`.
+pub(crate) fn ended_by_callback<T>(
+    progress: Progress<'_>,
+    work: impl FnOnce(Progress<'_>) -> Result<T>,
+) -> Result<T> {
+    let ended_by = Mutex::new(None);
+    let slot = || ended_by.lock().unwrap_or_else(PoisonError::into_inner);
+    let report = |what: &'static str, share: f64| {
+        progress.tell(what, share).map_err(|error| {
+            slot().get_or_insert(error);
+            Error::Fit("ended".into())
+        })
+    };
+    let found = work(Progress::new(&report));
+    match slot().take() {
+        Some(error) => Err(error),
+        None => found,
     }
 }
 

@@ -252,11 +252,11 @@ fn latent_line(model: &Model) -> Option<String> {
 /// What a body gains that nobody asked for.
 fn unasked_line(fit: &FitSummary) -> Option<String> {
     Some(format!(
-        "a body looked for unasked: the error on what was left out is {:.2} % with it, {:.2} % \
-         without; power heats it, so of a current or a voltage give the square; --dynamics off looks \
-         for none",
+        "nobody asked for this body: the error on what was left out is {:.2} % with it and {:.2} % \
+         without; the input has to be a power: of a current or a voltage, give the square; \
+         --dynamics off looks for no body, ring or lag",
         fit.validation.as_ref()?.nrmse_percent,
-        fit.without_body()?
+        fit.error_without_body()?
     ))
 }
 

@@ -162,7 +162,7 @@ fn a_fit_without_options_finds_the_body() {
     assert!(found.thermal.is_some() && none.thermal.is_none());
     let fit = found.fit.as_ref().unwrap();
     let left_out = fit.validation.as_ref().unwrap().nrmse_percent;
-    let without = fit.without_body().unwrap();
+    let without = fit.error_without_body().unwrap();
     let [with, cold] = [&found, &none].map(predicted);
     println!("left out {left_out:.2} and {without:.2} %, held out {with:.2} and {cold:.2} %");
     assert!(left_out < 0.5 * without && with < 0.5 * cold);

@@ -51,10 +51,9 @@ struct Both {
 /// shakes a resonance that the model does not have.
 const FOLLOWED: f64 = 1.0 / 3.0;
 
-/// A stroke counts as so many samples where it has more, and at least as this part of them while
-/// the input rests.
+/// A stroke is worth so many samples, each by its part of the way; and a sample at least this.
 const STROKE: f64 = 50.0;
-const RESTING: f64 = 0.3;
+const LEAST: f64 = 0.3;
 
 /// How far the input has gone.
 #[derive(Debug, Clone)]
@@ -73,18 +72,26 @@ impl Travel {
         }
     }
 
-    /// Goes on by a distance. What a sample counts for the stroke to come: errors along a branch are
-    /// alike, however densely it is sampled.
+    /// Goes on by a distance. Returns what the sample counts for the stroke to come: errors of
+    /// neighbouring samples are alike, the more so the denser they are.
     fn push(&mut self, distance: f64) -> f64 {
         self.now += distance;
         let [last, before] = self.before;
-        (STROKE * distance / last.max(before)).clamp(RESTING, 1.0)
+        (STROKE * distance / last.max(before)).clamp(LEAST, 1.0)
     }
 
     fn turn(&mut self, least: f64) {
         self.before = [self.now.max(least), self.before[0]];
         self.now = 0.0;
     }
+}
+
+/// What is returned to: shares, trend and model as they were when all was well.
+#[derive(Debug, Clone)]
+struct Good {
+    shares: Both,
+    trend: Option<(Vec<f64>, f64)>,
+    model: (Vec<f64>, f64),
 }
 
 /// Learners side by side, the one that learns nothing first.
@@ -100,9 +107,8 @@ pub(super) struct Mixture {
     /// stands still has said is undone by them.
     trusted: Both,
     pending: Both,
-    /// The last good shares, and the trend with them.
-    good: (Both, Option<(Vec<f64>, f64)>),
-    /// The mean of the experts, by the far shares.
+    good: Good,
+    /// What follows the mean of the experts by the far shares.
     weights: Vec<f64>,
     offset: f64,
     turning: Turning,
@@ -145,10 +151,11 @@ impl Mixture {
             watch: Watch::new(high - low, model.plane().levels() as f64),
             trusted: shares.clone(),
             pending: shares.clone(),
-            good: (
-                shares.clone(),
-                trend.map(|_| (model.weights().to_vec(), level)),
-            ),
+            good: Good {
+                shares: shares.clone(),
+                trend: trend.map(|_| (model.weights().to_vec(), level)),
+                model: (model.weights().to_vec(), level),
+            },
             shares,
             trend,
             weights: model.weights().to_vec(),
@@ -163,7 +170,7 @@ impl Mixture {
         Ok((core, mixture))
     }
 
-    /// The experts, each with its share of the model.
+    /// The experts, each with its share of what the model follows.
     pub(super) fn shares(&self) -> Vec<(&'static str, f64)> {
         let names = self.experts.iter().map(|expert| expert.name);
         names.zip(self.shares.far.all().iter().copied()).collect()
@@ -201,7 +208,12 @@ impl Mixture {
         }
         let from = state.position();
         let step = core.step(state, input)?;
-        let part = self.travel.push((state.position() - from).abs());
+        let distance = (state.position() - from).abs();
+        let part = if self.frozen {
+            LEAST
+        } else {
+            self.travel.push(distance)
+        };
         let (mut outputs, mut outcomes, mut fell_silent) = (Vec::new(), Vec::new(), false);
         for expert in &mut self.experts {
             let Expert {
@@ -247,7 +259,7 @@ impl Mixture {
         }
         if turned || !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
             // What was forgotten is gone at once.
-            let whole = turned || fell_silent;
+            let whole = turned || fell_silent || outcomes.contains(&Outcome::RolledBack);
             self.mix(core, if whole { 1.0 } else { FOLLOWED });
             core.rebase(state)?;
         }
@@ -350,6 +362,7 @@ impl Mixture {
     /// What the experts know now is all that they are judged by.
     fn begin_anew(&mut self) -> Result<()> {
         self.turning = Turning::new(self.tolerance);
+        self.travel.now = 0.0;
         (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
         if let Some((refit, _)) = self.trend {
             let Expert { learns, kept, .. } = &mut self.experts[refit];
@@ -380,6 +393,7 @@ impl Mixture {
             expert.learns.realign(&expert.state)?;
         }
         self.turning = Turning::new(self.tolerance);
+        self.travel.now = 0.0;
         self.trust();
         Ok(())
     }
@@ -403,7 +417,11 @@ impl Mixture {
             let learns = &self.experts[trend].learns;
             (learns.weights(), learns.level())
         });
-        self.good = (self.shares.clone(), trend);
+        self.good = Good {
+            shares: self.shares.clone(),
+            trend,
+            model: (self.weights.clone(), self.offset),
+        };
         self.trust();
         self.experts
             .iter_mut()
@@ -411,23 +429,28 @@ impl Mixture {
     }
 
     pub(super) fn roll_back(&mut self, core: &mut Core) -> Result<()> {
-        let (shares, kept) = self.good.clone();
+        let Good {
+            shares,
+            trend: kept,
+            model,
+        } = self.good.clone();
         self.shares = shares;
         self.experts.iter_mut().try_for_each(Expert::roll_back)?;
         self.begin_anew()?;
         if let (Some((_, trend)), Some((weights, offset))) = (self.trend, kept) {
             self.experts[trend].set(weights, offset)?;
         }
-        self.mix(core, 1.0);
+        core.set_weights(&model.0)?;
+        (self.weights, self.offset) = model;
         Ok(())
     }
 
     pub(super) fn refit(&mut self, core: &mut Core) -> Result<bool> {
-        let changed = self.refit_all()?;
-        if changed {
+        self.refit_all()?;
+        if !self.frozen {
             self.mix(core, 1.0);
         }
-        Ok(changed)
+        Ok(!self.frozen)
     }
 }
 

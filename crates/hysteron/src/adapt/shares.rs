@@ -172,10 +172,11 @@ mod tests {
                     false => rng.random_range(-1.0..1.0),
                 };
                 let errors: Vec<f64> = (0..count).map(|_| error()).collect();
-                shares.judge(&errors, 1.0);
+                let part = rng.random_range(0.3..1.0);
+                shares.judge(&errors, part);
                 let sum: f64 = shares.all().iter().sum();
                 assert!((sum - 1.0).abs() < 1e-12, "{sum}");
-                let least = GIVEN / count as f64;
+                let least = part * GIVEN / count as f64;
                 assert!(shares.all().iter().all(|v| *v >= least * (1.0 - 1e-12)));
             }
         }

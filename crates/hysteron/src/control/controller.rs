@@ -161,7 +161,7 @@ impl Controller {
     /// As [`Controller::step`], for a reference that is known ahead: `next` has its values at the
     /// samples after this one. The inverse solves for the one that is due when the drive of this
     /// sample is seen to act ([`Controller::due`]), or for the last one that it is told. The
-    /// feedforward of a fixed model with a thermal body may then start to heat or to cool before
+    /// feedforward of a model with a thermal body may then start to heat or to cool before
     /// they are due ([`crate::Inverse::step_ahead`]). Earlier targets are missed by up to a tenth
     /// of the range for that. Other feedforward takes no notice of those after the one that is due.
     ///

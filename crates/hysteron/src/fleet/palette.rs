@@ -159,7 +159,7 @@ impl Palette {
 /// What the fit of an actuator costs, in some unit.
 fn cost(chosen: &Chosen) -> usize {
     let finds_rest = chosen.start == crate::model::Start::Rest && chosen.rest.is_none();
-    chosen.levels.pow(2) * if finds_rest { 8 } else { 1 }
+    chosen.levels.pow(2) * if finds_rest { 8 } else { 1 } * if chosen.heated { 8 } else { 1 }
 }
 
 #[cfg(test)]

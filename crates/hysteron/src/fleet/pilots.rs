@@ -7,14 +7,13 @@ use super::palette::Palette;
 use super::reading::{Job, Reading};
 use super::signs::Signs;
 use super::sources::Source;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::identify::Chosen;
 use crate::parallel;
-use crate::progress::Progress;
+use crate::progress::{Progress, ended_by_callback};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, PoisonError};
 
 /// Of a smaller fleet each actuator chooses for itself.
 const FEWEST: usize = 24;
@@ -43,20 +42,10 @@ pub(super) fn choose(
     if options.choice == FleetChoice::Each || !options.fit.leaves_choices(timed) {
         return Ok(None);
     }
-    // An end that the callback asks for is kept: a fit that it ends is no fit that fails.
-    let ended_by = Mutex::new(None);
-    let slot = || ended_by.lock().unwrap_or_else(PoisonError::into_inner);
-    let report = |what: &'static str, share: f64| {
-        progress.tell(what, share).map_err(|error| {
-            slot().get_or_insert(error);
-            Error::Fit("ended".into())
-        })
-    };
-    let found = asked(sources, options, ended, Progress::new(&report));
-    match slot().take() {
-        Some(error) => Err(error),
-        None => found,
-    }
+    // A fit that the callback ends is no fit that fails.
+    ended_by_callback(progress, |progress| {
+        asked(sources, options, ended, progress)
+    })
 }
 
 /// As [`choose`], where there is something to choose.

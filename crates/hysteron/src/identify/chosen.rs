@@ -44,7 +44,7 @@ impl Chosen {
             spacing: spacing_shape(model, recording),
             delay: model.delay().samples(),
             rings: fit.is_some_and(|fit| fit.other.contains_key("ring")),
-            heated: fit.is_some_and(|fit| fit.without_body().is_some()),
+            heated: fit.is_some_and(|fit| fit.error_without_body().is_some()),
         }
     }
 
@@ -58,8 +58,8 @@ impl Chosen {
 }
 
 impl Fit<'_> {
-    /// Whether anything is left to the data that [`Chosen`] could decide. Dead time and resonance
-    /// are looked for in recordings with time only (`timed`).
+    /// Whether anything is left to the data that [`Chosen`] could decide. Dead time, resonance and
+    /// body are looked for in recordings with time only (`timed`).
     pub(crate) fn leaves_choices(&self, timed: bool) -> bool {
         let Self { options, open, .. } = self;
         let chosen = open.levels || open.smooth || self.auto_start;
@@ -94,8 +94,8 @@ impl Fit<'_> {
         if self.options.delay == Choice::Auto && fit.thermal == Thermal::None {
             fit = fit.delay(chosen.delay);
         }
-        if !chosen.rings {
-            fit = fit.without_auto_dynamics();
+        if !chosen.rings && fit.options.dynamics == Dynamics::Auto {
+            fit.options.dynamics = Dynamics::Off;
         }
         fit
     }

@@ -54,9 +54,9 @@ pub struct Fit<'a> {
     pub(super) shape: Option<SpacingShape>,
     /// Whether the model is tested on what is left out, even if nothing is chosen by it.
     pub(super) tested: bool,
-    repeats: Vec<Recording>,
+    pub(super) repeats: Vec<Recording>,
     pub(super) prior: Option<Arc<WeightPrior>>,
-    progress: Progress<'a>,
+    pub(super) progress: Progress<'a>,
 }
 
 impl Default for Fit<'_> {
@@ -265,7 +265,7 @@ impl<'a> Fit<'a> {
         is_late || self.options.needs_time() || self.thermal != Thermal::None
     }
 
-    /// Whether a dead time, a ring or a lag that nobody asked for is looked for in recordings with
+    /// Whether a dead time, a ring, a lag or a body that nobody asked for is looked for in recordings with
     /// time and without a load.
     pub(crate) fn looks_for_dynamics(&self) -> bool {
         self.options.looks_for_ring() || self.options.delay == Choice::Auto
@@ -285,7 +285,7 @@ impl<'a> Fit<'a> {
     /// What is looked for behind the operators in recordings with time: by default a ring, a
     /// resonance of the second order, where the recordings excite one, else a lag. It is taken only
     /// if it predicts parts of them that were left out. By default a thermal body in front of the
-    /// operators is looked for, too ([`FitSummary::without_body`]), where what was left out is
+    /// operators is looked for, too ([`FitSummary::error_without_body`]), where what was left out is
     /// predicted to no better than 1 % of the range. Recordings with a load get none.
     #[must_use]
     pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
@@ -379,24 +379,28 @@ impl<'a> Fit<'a> {
             );
             return Err(Error::Fit(what.to_owned()).remedied(remedy));
         }
-        let (mut model, delay) = match self.options.delay {
-            Choice::Auto if !self.options.asks_after() => {
-                heated::or_cold(self, recordings, self.delayed(recordings)?)?
-            }
+        let found = self.timed(recordings)?;
+        let (mut model, delay) = heated::or_cold(self, recordings, found)?;
+        widen(&mut model, &delay.of_recordings(&self.repeats))?;
+        Ok(model.with_delay(delay))
+    }
+
+    /// The model, and the dead time before it.
+    pub(super) fn timed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
+        Ok(match self.options.delay {
+            Choice::Auto if !self.options.asks_after() => self.delayed(recordings)?,
             Choice::Auto => (self.acting(recordings)?, Delay::NONE),
             Choice::Fixed(samples) => {
                 let delay = delay::fixed(samples, recordings)?;
                 (self.acting(&delay.of_recordings(recordings))?, delay)
             }
-        };
-        widen(&mut model, &delay.of_recordings(&self.repeats))?;
-        Ok(model.with_delay(delay))
+        })
     }
 
     /// The model, and the dead time before it, where the whole model is better with it than without
     /// it on what was left out, or is about as good as one with a stage that comes late in its place.
     /// A coarse grid takes a narrow loop for a dead time.
-    pub(super) fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
+    fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         let at_once = self.acting(recordings)?;
         // A body and a dead time change places, so what is behind the body tells.
         let behind: Cow<'_, [Recording]> = match self.thermal {

@@ -5,6 +5,7 @@ use crate::identify::fit::Fit;
 use crate::identify::options::{Dynamics, Thermal};
 use crate::identify::stages::step_of;
 use crate::model::{Delay, FitSummary, Model, Validation};
+use crate::progress::ended_by_callback;
 use crate::recording::Recording;
 use serde_json::json;
 
@@ -12,8 +13,8 @@ use serde_json::json;
 /// cost more than it could gain.
 const WELL: f64 = 1.0;
 
-/// With a body, errors have to be at most this part of those without it: on branches that were left
-/// out, and where there were so few that parts of them were.
+/// With a body, both errors have to be at most this part of those without it: where whole branches
+/// were left out, and where there are so few that parts of them were.
 const WORTH: f64 = 0.9;
 const WORTH_OF_PARTS: f64 = 0.5;
 
@@ -37,35 +38,43 @@ pub(super) fn or_cold(
     if !may_be_heated(fit, recordings) {
         return Ok(cold);
     }
-    let mut tested = fit.clone();
-    tested.tested = true;
+    let mut heated = fit.clone();
+    heated.tested = true;
     let judged = match validation(&cold.0) {
         Some(_) => cold.0.clone(),
-        None => tested.delayed(recordings)?.0,
+        None => {
+            let mut tested = heated.clone().bootstrap(0);
+            tested.auto_bootstrap = false;
+            tested.timed(recordings)?.0
+        }
     };
     let without = validation(&judged).map(|without| without.nrmse_percent);
     let Some(without) = without.filter(|error| *error >= WELL) else {
         return Ok(cold);
     };
-    let mut heated = tested;
     heated.thermal = Thermal::Auto;
-    let (mut warm, delay) = match heated.delayed(recordings) {
+    let found = ended_by_callback(fit.progress, |progress| {
         // No body keeps the operators inside the plane.
+        let found = heated.progress(progress).timed(recordings);
+        Ok(found)
+    })?;
+    let (mut warm, delay) = match found {
         Err(error) if matches!(error.parts().0, Error::Fit(_) | Error::Thermal(_)) => {
             return Ok(cold);
         }
         found => found?,
     };
     // A body about as fast as the samples cannot be told from how a drive is held between them.
-    let longest_step = recordings.iter().map(step_of).fold(0.0, f64::max);
+    let step = recordings.iter().map(step_of).fold(0.0, f64::max);
     let is_seen = warm
         .thermal
-        .is_some_and(|body| body.tau_heating.min(body.tau_cooling) > STEPS * longest_step);
+        .is_some_and(|body| body.tau_heating.min(body.tau_cooling) > STEPS * step);
     if !(is_seen && is_worth(&warm, &judged)) {
         return Ok(cold);
     }
     if let Some(fit) = &mut warm.fit {
-        fit.other.insert(WITHOUT.to_owned(), json!(without));
+        let without = json!(without);
+        fit.other.insert(WITHOUT.to_owned(), without);
     }
     Ok((warm, delay))
 }
@@ -78,7 +87,7 @@ fn may_be_heated(fit: &Fit<'_>, recordings: &[Recording]) -> bool {
         && fit.thermal == Thermal::None
         && !fit.options.asks_after()
         && fit.prior.is_none();
-    is_open && recordings.iter().all(can_show)
+    is_open && recordings.iter().all(can_show) && fit.repeats.iter().all(can_show)
 }
 
 fn validation(model: &Model) -> Option<&Validation> {
@@ -100,10 +109,10 @@ fn is_worth(warm: &Model, cold: &Model) -> bool {
 }
 
 impl FitSummary {
-    /// The error without a body that nobody asked for, on what was left out, in percent of the
-    /// range.
+    /// Where a thermal body was found that nobody asked for: the error on what was left out without
+    /// it, in percent of the range.
     #[must_use]
-    pub fn without_body(&self) -> Option<f64> {
+    pub fn error_without_body(&self) -> Option<f64> {
         self.other.get(WITHOUT)?.as_f64()
     }
 }

@@ -70,9 +70,12 @@ pub(super) fn with_start(
     Ok(best)
 }
 
+/// A start before the first input has to explain several recordings better by this share.
+const WORSE: f64 = 0.01;
+
 /// The model with its start moved to the first input of the first recording: an inverse and a loop
-/// begin there, as the actuator did. Recordings that begin elsewhere may lead to other branches; if
-/// they then err more, the start stays as it was.
+/// begin there, as the actuator did. Others that begin elsewhere may lead to other branches; if all
+/// then err more by this share, the start stays as it was.
 fn at_first(model: Model, recordings: &[Recording]) -> Result<Model> {
     let first = recordings[0].part(0..1);
     let around = Surroundings::from_recording(&model, &first);
@@ -80,8 +83,10 @@ fn at_first(model: Model, recordings: &[Recording]) -> Result<Model> {
     let mut state = model.start();
     model.operators().step(&mut state.operators, seen[0])?;
     let moved = model.clone().starting_from(&state)?;
-    let worse = squares(&moved, recordings)? > squares(&model, recordings)?;
-    Ok(if worse { model } else { moved })
+    // One recording goes on from there as it did.
+    let is_kept = recordings.len() > 1
+        && squares(&moved, recordings)? > (1.0 + WORSE) * squares(&model, recordings)?;
+    Ok(if is_kept { model } else { moved })
 }
 
 /// The sum of the squared errors from the start that the model keeps.

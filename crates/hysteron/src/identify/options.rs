@@ -101,7 +101,7 @@ impl From<Auto> for Thermal {
     }
 }
 
-/// What is looked for behind the operators in recordings with time, beside creep.
+/// What is looked for in recordings with time, beside creep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dynamics {
     /// A ring, where the recordings excite one; else a lag, where it predicts what was left out. Or
@@ -148,7 +148,7 @@ pub enum Spacing {
 /// | `delay` | off (0); auto | auto, 0 to 1000 | dead time, in samples of the recording |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
 /// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
-/// | `dynamics` | off; auto | off, auto, lag, ring | a resonance or a lag, see [`Dynamics`] |
+/// | `dynamics` | off; auto | off, auto, lag, ring | what happens in time, see [`Dynamics`] |
 /// | `curve` | off (0) | auto, 1 to 100 | pieces of a curve behind the operators |
 /// | `bootstrap` | 0; 200 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]

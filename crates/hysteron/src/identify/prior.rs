@@ -106,8 +106,8 @@ impl WeightPrior {
             )));
         }
         if !is_static(first) {
-            let problem = "a prior is of weights alone, and these models have a load or stages \
-                           behind the operators";
+            let problem = "a prior is of weights alone, and these models have a load or stages that \
+                           depend on time: fit them without (dynamics off)";
             return Err(Error::Fit(problem.into()));
         }
         let errors = models.iter().map(|model| Some(model.fit.as_ref()?.rmse));

@@ -317,6 +317,11 @@ impl Verdict {
                         Setting::word("solver", "ols"),
                     ],
                 ),
+                PartKind::Late if self.tried.thermal => Remedy::new(
+                    "fit this recording together with the one fitted: the body was found from that \
+                     one alone",
+                    [],
+                ),
                 PartKind::Late if self.has_time => Remedy::new(
                     "let the fit look for what comes late: {}, {}, or {} for a drive that heats",
                     [

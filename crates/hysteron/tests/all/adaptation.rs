@@ -221,8 +221,14 @@ fn the_adapted_file_says_how_it_came_about() {
 
 #[test]
 fn frozen_it_stays_and_what_was_kept_comes_back() {
+    for learner in [Learner::LeastSquares, Learner::Auto] {
+        stays_and_comes_back(learner);
+    }
+}
+
+fn stays_and_comes_back(learner: Learner) {
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
-    let options = by(Learner::LeastSquares);
+    let options = by(learner);
     let mut adaptive = options.adaptive_after(&model, &recording).unwrap();
     let learn = |adaptive: &mut Adaptive| {
         for (input, output) in recording.input.iter().zip(&recording.output) {

@@ -2,8 +2,8 @@
 
 use crate::common::shared;
 use hysteron::{
-    Columns, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Recording, Repair, Sign,
-    evaluate, operators,
+    Columns, Error, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Progress, Recording,
+    Repair, Sign, evaluate, operators,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -328,4 +328,68 @@ fn heat_that_is_bound_is_in_the_file() {
         .to_json()
         .replace(r#""latent":[3.0]"#, r#""latent":[3.0,1.0]"#);
     assert!(Model::from_json(&several).is_err());
+}
+
+/// Where nothing heats, nobody finds a body: the output comes late by a lag or a dead time, or the
+/// body is so fast that its rows cannot show it.
+#[test]
+fn what_does_not_heat_gets_no_body() {
+    let (time, input) = drive();
+    let model = truth().without_body();
+    let clean = model.simulate(&input).unwrap();
+    for seed in 0..6_u64 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let noise = Normal::new(0.0, 0.5).unwrap(); // of a range of some 10
+        let mut held = clean[0];
+        let late: Vec<f64> = match seed % 3 {
+            0 => clean
+                .iter()
+                .map(|y| {
+                    held += 0.05 * (y - held);
+                    held
+                })
+                .collect(),
+            1 => (0..clean.len())
+                .map(|n| clean[n.saturating_sub(20)])
+                .collect(),
+            _ => {
+                let fast = FirstOrder {
+                    tau_heating: 0.05,
+                    tau_cooling: 0.05,
+                    ..BODY
+                };
+                let seen = fast.respond(&time, &input).unwrap();
+                model.simulate(&seen).unwrap()
+            }
+        };
+        let output = late.iter().map(|y| y + noise.sample(&mut rng)).collect();
+        let mut recording = Recording::new(input.clone(), output).unwrap();
+        recording.time = Some(time.clone());
+        let found = Fit::new().bootstrap(0).run(&recording).unwrap();
+        let fit = found.fit.as_ref().unwrap();
+        let left_out = fit.validation.as_ref().unwrap().nrmse_percent;
+        println!(
+            "{seed}: {left_out:.2} %, {:?} {:?}",
+            found.thermal,
+            found.delay()
+        );
+        // A body is looked for from 1 % on.
+        assert!(
+            left_out > 1.0 && found.thermal.is_none(),
+            "{seed}: {left_out}"
+        );
+    }
+}
+
+/// An end that the callback asks for ends the fit, also while a body is looked for.
+#[test]
+fn a_fit_that_is_ended_while_it_looks_for_a_body_is_no_cold_one() {
+    let (recording, _) = recorded(2600);
+    let end = |what: &'static str, _: f64| match what {
+        "time constants" => Err(Error::Fit("that is enough".into())),
+        _ => Ok(()),
+    };
+    let ended = Fit::new().progress(Progress::new(&end)).run(&recording);
+    let text = ended.unwrap_err().to_string();
+    assert!(text.contains("that is enough"), "{text}");
 }
