@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::identify::fit::Fit;
 use crate::identify::options::{Dynamics, Thermal};
-use crate::identify::stages::step_of;
+use crate::identify::stages::{step_of, with_right_input};
 use crate::model::{Delay, FitSummary, Model, Validation};
 use crate::progress::ended_by_callback;
 use crate::recording::Recording;
@@ -38,6 +38,23 @@ pub(super) fn or_cold(
     if !may_be_heated(fit, recordings) {
         return Ok(cold);
     }
+    // A wrong reading of the input moves a model at once and the output not at all, as if something
+    // heated. So a body has to be there without it, too.
+    let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
+    let mut pairs = right.iter().zip(recordings);
+    if pairs.any(|(right, read)| right.input != read.input) {
+        let mut trial = fit.clone().bootstrap(0);
+        trial.auto_bootstrap = false;
+        let plain = trial.timed(&right)?;
+        if better(&trial, &right, plain)?.0.thermal.is_none() {
+            return Ok(cold);
+        }
+    }
+    better(fit, recordings, cold)
+}
+
+/// The better one of both.
+fn better(fit: &Fit<'_>, recordings: &[Recording], cold: (Model, Delay)) -> Result<(Model, Delay)> {
     let mut heated = fit.clone();
     heated.tested = true;
     let judged = match validation(&cold.0) {

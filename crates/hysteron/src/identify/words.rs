@@ -128,8 +128,8 @@ pub const FIT_OPTIONS: [FitOption; 20] = [
         name: "dynamics",
         default: "`auto`",
         range: "`auto`, `off`, `lag`, `ring`",
-        purpose: "with time: a resonance of the output, or a lag; `auto`: where \
-                  that is better by 10 %; `lag` is `lag auto`",
+        purpose: "with time: a resonance of the output, a lag, or a thermal body in front; `auto`: \
+                  where that is better by 10 %; `lag` is `lag auto`",
     },
     FitOption {
         name: "curve",

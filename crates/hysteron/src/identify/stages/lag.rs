@@ -75,7 +75,7 @@ pub(super) fn find(
 }
 
 /// The recording with lines in place of wrong readings of its input.
-fn with_right_input(recording: &Recording) -> Recording {
+pub(crate) fn with_right_input(recording: &Recording) -> Recording {
     let [wrong, _] = recording.wrong_readings();
     let mut mended = recording.clone();
     for run in wrong.chunk_by(|a, b| a + 1 == *b) {
