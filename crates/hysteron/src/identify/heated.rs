@@ -14,9 +14,10 @@ use serde_json::json;
 const WELL: f64 = 1.0;
 
 /// With a body, both errors have to be at most this part of those without it: where whole branches
-/// were left out, and where there are so few that parts of them were.
+/// were left out; and where there are so few that parts of them were, or where a lag or a ring stands
+/// in its place. A body smooths as a lag does, and gains a little where only the lag is true.
 const WORTH: f64 = 0.9;
-const WORTH_OF_PARTS: f64 = 0.5;
+const CLEAR_WORTH: f64 = 0.5;
 
 /// A time constant has to be longer than this many sampling steps.
 const STEPS: f64 = 1.5;
@@ -117,9 +118,10 @@ fn is_worth(warm: &Model, cold: &Model) -> bool {
     let (Some(with), Some(without)) = (validation(warm), validation(cold)) else {
         return false;
     };
-    let most = match with.whole_branches && without.whole_branches {
+    let is_whole = with.whole_branches && without.whole_branches;
+    let most = match is_whole && !cold.is_timed() {
         true => WORTH,
-        false => WORTH_OF_PARTS,
+        false => CLEAR_WORTH,
     };
     let rmse = |model: &Model| model.fit.as_ref().map_or(f64::INFINITY, |fit| fit.rmse);
     with.rmse < most * without.rmse && rmse(warm) < most * rmse(cold)
