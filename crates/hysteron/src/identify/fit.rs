@@ -5,12 +5,13 @@ use crate::identify::choose::start::{at_rest, usual_start};
 use crate::identify::choose::{Open, is_worth};
 use crate::identify::delay;
 use crate::identify::doubt::sessions::widen;
+use crate::identify::heated::{self, Again};
+use crate::identify::kept;
 use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing, Thermal};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked, SpacingShape};
 use crate::identify::weights::problem::{check_gram, check_options};
-use crate::identify::{heated, kept};
 use crate::model::{Delay, Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -54,9 +55,9 @@ pub struct Fit<'a> {
     pub(super) shape: Option<SpacingShape>,
     /// Whether the model is tested on what is left out, even if nothing is chosen by it.
     pub(super) tested: bool,
-    pub(super) repeats: Vec<Recording>,
+    repeats: Vec<Recording>,
     pub(super) prior: Option<Arc<WeightPrior>>,
-    pub(super) progress: Progress<'a>,
+    progress: Progress<'a>,
 }
 
 impl Default for Fit<'_> {
@@ -271,6 +272,12 @@ impl<'a> Fit<'a> {
         self.options.looks_for_ring() || self.options.delay == Choice::Auto
     }
 
+    /// Whether a thermal body that nobody asked for is looked for.
+    fn looks_for_body(&self) -> bool {
+        let is_open = self.options.dynamics == Dynamics::Auto && !self.options.asks_after();
+        is_open && self.thermal == Thermal::None && self.prior.is_none()
+    }
+
     /// Looks for nothing of them.
     pub(crate) fn without_auto_dynamics(mut self) -> Self {
         if self.options.dynamics == Dynamics::Auto {
@@ -379,14 +386,32 @@ impl<'a> Fit<'a> {
             );
             return Err(Error::Fit(what.to_owned()).remedied(remedy));
         }
-        let found = self.timed(recordings)?;
-        let (mut model, delay) = heated::or_cold(self, recordings, found)?;
+        let mut found = self.timed(recordings)?;
+        if self.looks_for_body()
+            && [recordings, &self.repeats]
+                .into_iter()
+                .all(heated::can_show)
+        {
+            let again = |recordings: &[Recording], again: Again, progress: Progress<'_>| {
+                let mut fit = self.clone().progress(progress);
+                fit.tested = true;
+                if again.body {
+                    fit.thermal = Thermal::Auto;
+                }
+                if !again.bootstrap {
+                    (fit.auto_bootstrap, fit.options.bootstrap) = (false, 0);
+                }
+                fit.timed(recordings)
+            };
+            found = heated::or_cold(recordings, found, &again, self.progress)?;
+        }
+        let (mut model, delay) = found;
         widen(&mut model, &delay.of_recordings(&self.repeats))?;
         Ok(model.with_delay(delay))
     }
 
     /// The model, and the dead time before it.
-    pub(super) fn timed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
+    fn timed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         Ok(match self.options.delay {
             Choice::Auto if !self.options.asks_after() => self.delayed(recordings)?,
             Choice::Auto => (self.acting(recordings)?, Delay::NONE),

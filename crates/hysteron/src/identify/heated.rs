@@ -1,11 +1,9 @@
 //! Looks for a thermal body in front of the operators that nobody asked for.
 
 use crate::error::{Error, Result};
-use crate::identify::fit::Fit;
-use crate::identify::options::{Dynamics, Thermal};
 use crate::identify::stages::{step_of, with_right_input};
 use crate::model::{Delay, FitSummary, Model, Validation};
-use crate::progress::ended_by_callback;
+use crate::progress::{Progress, ended_by_callback};
 use crate::recording::Recording;
 use serde_json::json;
 
@@ -25,18 +23,31 @@ const STEPS: f64 = 1.5;
 /// What the record of a body says of the error without it.
 const WITHOUT: &str = "without_body";
 
-/// The model of the fit and its dead time, or in their place those with a thermal body, where the
+/// How a fit is run again.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Again {
+    /// With a thermal body.
+    pub(super) body: bool,
+    /// With the bootstrap of the fit, or with none.
+    pub(super) bootstrap: bool,
+}
+
+/// Runs a fit again, tested on what is left out. Returns its model and the dead time.
+pub(super) type Run<'a> = &'a dyn Fn(&[Recording], Again, Progress<'_>) -> Result<(Model, Delay)>;
+
+/// The model of a fit and its dead time, or in their place those with a thermal body, where the
 /// whole model is better with it on what was left out and on what was fitted. What a drive heats
 /// looks like a dead time or a lag, and is predicted by neither.
 ///
 /// # Errors
-/// As [`Fit::run`].
+/// Those of `run`, and of the callback of `progress`.
 pub(super) fn or_cold(
-    fit: &Fit<'_>,
     recordings: &[Recording],
     cold: (Model, Delay),
+    run: Run<'_>,
+    progress: Progress<'_>,
 ) -> Result<(Model, Delay)> {
-    if !may_be_heated(fit, recordings) {
+    if validation(&cold.0).is_some_and(|without| without.nrmse_percent < WELL) {
         return Ok(cold);
     }
     // A wrong reading of the input moves a model at once and the output not at all, as if something
@@ -44,39 +55,59 @@ pub(super) fn or_cold(
     let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
     let mut pairs = right.iter().zip(recordings);
     if pairs.any(|(right, read)| right.input != read.input) {
-        let mut trial = fit.clone().bootstrap(0);
-        trial.auto_bootstrap = false;
-        let plain = trial.timed(&right)?;
-        if better(&trial, &right, plain)?.0.thermal.is_none() {
+        let trial = |recordings: &[Recording], again: Again, progress: Progress<'_>| {
+            let bootstrap = false;
+            run(recordings, Again { bootstrap, ..again }, progress)
+        };
+        let again = Again {
+            body: false,
+            bootstrap: false,
+        };
+        let plain = run(&right, again, progress)?;
+        if better(&right, plain, &trial, progress)?.0.thermal.is_none() {
             return Ok(cold);
         }
     }
-    better(fit, recordings, cold)
+    better(recordings, cold, run, progress)
+}
+
+/// Whether recordings can show a body.
+pub(super) fn can_show(recordings: &[Recording]) -> bool {
+    let rises = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
+    let is_timed = |one: &Recording| one.time.as_ref().is_some_and(rises);
+    recordings
+        .iter()
+        .all(|one| one.load.is_none() && is_timed(one))
 }
 
 /// The better one of both.
-fn better(fit: &Fit<'_>, recordings: &[Recording], cold: (Model, Delay)) -> Result<(Model, Delay)> {
-    let mut heated = fit.clone();
-    heated.tested = true;
+fn better(
+    recordings: &[Recording],
+    cold: (Model, Delay),
+    run: Run<'_>,
+    progress: Progress<'_>,
+) -> Result<(Model, Delay)> {
     let judged = match validation(&cold.0) {
         Some(_) => cold.0.clone(),
         None => {
-            let mut tested = heated.clone().bootstrap(0);
-            tested.auto_bootstrap = false;
-            tested.timed(recordings)?.0
+            let again = Again {
+                body: false,
+                bootstrap: false,
+            };
+            run(recordings, again, progress)?.0
         }
     };
     let without = validation(&judged).map(|without| without.nrmse_percent);
     let Some(without) = without.filter(|error| *error >= WELL) else {
         return Ok(cold);
     };
-    heated.thermal = Thermal::Auto;
-    let found = ended_by_callback(fit.progress, |progress| {
-        // No body keeps the operators inside the plane.
-        let found = heated.progress(progress).timed(recordings);
-        Ok(found)
-    })?;
+    let again = Again {
+        body: true,
+        bootstrap: true,
+    };
+    let found = ended_by_callback(progress, |progress| Ok(run(recordings, again, progress)))?;
     let (mut warm, delay) = match found {
+        // No body keeps the operators inside the plane.
         Err(error) if matches!(error.parts().0, Error::Fit(_) | Error::Thermal(_)) => {
             return Ok(cold);
         }
@@ -95,17 +126,6 @@ fn better(fit: &Fit<'_>, recordings: &[Recording], cold: (Model, Delay)) -> Resu
         fit.other.insert(WITHOUT.to_owned(), without);
     }
     Ok((warm, delay))
-}
-
-/// Whether the recordings can show a body, and nothing that was asked for stands in its place.
-fn may_be_heated(fit: &Fit<'_>, recordings: &[Recording]) -> bool {
-    let rises = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
-    let can_show = |one: &Recording| one.load.is_none() && one.time.as_ref().is_some_and(rises);
-    let is_open = fit.options.dynamics == Dynamics::Auto
-        && fit.thermal == Thermal::None
-        && !fit.options.asks_after()
-        && fit.prior.is_none();
-    is_open && recordings.iter().all(can_show) && fit.repeats.iter().all(can_show)
 }
 
 fn validation(model: &Model) -> Option<&Validation> {
