@@ -292,8 +292,9 @@ impl<'a> Fit<'a> {
     /// What is looked for behind the operators in recordings with time: by default a ring, a
     /// resonance of the second order, where the recordings excite one, else a lag. It is taken only
     /// if it predicts parts of them that were left out. By default a thermal body in front of the
-    /// operators is looked for, too ([`FitSummary::error_without_body`]), where what was left out is
-    /// predicted to no better than 1 % of the range. Recordings with a load get none.
+    /// operators is looked for, too, where what was left out is predicted to no better than 1 % of
+    /// the range ([`error_without_body`](crate::FitSummary::error_without_body)). Recordings with a
+    /// load get none.
     #[must_use]
     pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
         self.options.dynamics = dynamics;
