@@ -188,16 +188,14 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
         curve: count("curve", args.stages.curve)?,
         ..FitOptions::plain()
     };
-    let fit = Fit::from(options)
+    let mut fit = Fit::from(options)
         .levels(levels)
         .smooth(args.weights.smooth)
         .start(args.weights.start)
-        .bootstrap(args.tests.bootstrap.map_or(Choice::Auto, Choice::Fixed))
-        .thermal(
-            args.stages
-                .thermal
-                .map_or(hysteron::Thermal::None, Into::into),
-        );
+        .bootstrap(args.tests.bootstrap.map_or(Choice::Auto, Choice::Fixed));
+    if let Some(body) = args.stages.thermal {
+        fit = fit.thermal(body);
+    }
     match &args.weights.prior {
         Some(models) => Ok(fit.prior(prior_of_fleet(models)?)),
         None => Ok(fit),

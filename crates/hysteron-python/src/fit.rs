@@ -99,6 +99,7 @@ use pyo3::types::{PyDict, PySequence, PyString};
 ///     ``'rows:100-200'`` or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. A list
 ///     may hold one such text beside recordings. `FitSummary.hold_out` has the errors there.
 /// thermal : {None, 'first-order', 'auto', True, False}
+///     None leaves it to `dynamics`; False looks for none.
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. 'auto' adds heat that the operators bind where that predicts what is left out. The
 ///     input has to be proportional to the power, as a duty cycle is: give the square of a current
@@ -168,13 +169,15 @@ pub(crate) fn fit(
         "progress",
     ];
     let mut fit = fit_with("fit", &names, (bootstrap, prior), options)?;
-    let thermal = thermal.map_or(Ok(Thermal::None), thermal_of)?;
+    if let Some(thermal) = thermal {
+        fit = fit.thermal(thermal_of(thermal)?);
+    }
     let recordings = recordings_of(recording, output, time, load)?;
     let repeats = repeats.map(|repeats| recordings_alone("repeats", repeats));
     let hold_out = hold_out.map(hold_out_of).transpose()?;
     fit = fit.repeats(repeats.transpose()?.unwrap_or_default());
     let (model, advice) = with_progress(py, progress, |progress| {
-        let fit = fit.thermal(thermal).progress(progress);
+        let fit = fit.progress(progress);
         let (model, held_out) = match &hold_out {
             None => (fit.run(&recordings)?, None),
             Some(what) => {

@@ -7,7 +7,7 @@ use crate::integer::Integer;
 use crate::model::Model;
 use crate::prior::WeightPrior;
 use crate::progress::with_progress;
-use hysteron::{Columns, Destination, FleetChoice, FleetOptions, ReadOptions, Repair, Thermal};
+use hysteron::{Columns, Destination, FleetChoice, FleetOptions, ReadOptions, Repair};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashSet;
@@ -112,8 +112,10 @@ pub(crate) fn fit_fleet<'py>(
         "force",
         "progress",
     ];
-    let fit = fit_with("fit_fleet", &names, (bootstrap, prior), options)?
-        .thermal(thermal.map_or(Ok(Thermal::None), thermal_of)?);
+    let mut fit = fit_with("fit_fleet", &names, (bootstrap, prior), options)?;
+    if let Some(thermal) = thermal {
+        fit = fit.thermal(thermal_of(thermal)?);
+    }
     let columns = Columns {
         time,
         load,

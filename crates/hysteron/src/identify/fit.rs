@@ -51,6 +51,8 @@ pub struct Fit<'a> {
     pub(super) auto_start: bool,
     pub(super) auto_bootstrap: bool,
     pub(super) thermal: Thermal,
+    /// Whether that was said. Then no body is looked for unasked.
+    says_thermal: bool,
     /// How the levels follow the output, where that was chosen before.
     pub(super) shape: Option<SpacingShape>,
     /// Whether the model is tested on what is left out, even if nothing is chosen by it.
@@ -93,6 +95,7 @@ impl From<FitOptions> for Fit<'_> {
             auto_start: false,
             auto_bootstrap: false,
             thermal: Thermal::None,
+            says_thermal: false,
             shape: None,
             tested: false,
             repeats: Vec::new(),
@@ -275,7 +278,8 @@ impl<'a> Fit<'a> {
     /// Whether a thermal body that nobody asked for is looked for.
     fn looks_for_body(&self) -> bool {
         let is_open = self.options.dynamics == Dynamics::Auto && !self.options.asks_after();
-        is_open && self.thermal == Thermal::None && self.prior.is_none()
+        let is_said = self.says_thermal || self.thermal != Thermal::None;
+        is_open && !is_said && self.prior.is_none()
     }
 
     /// Looks for nothing of them.
@@ -311,7 +315,8 @@ impl<'a> Fit<'a> {
     }
 
     /// Whether a thermal body in front of the operators is identified together with the weights:
-    /// `true` or `false`, or [`Auto`](crate::Auto) for a body that may bind heat ([`Thermal`]).
+    /// `true` or `false`, or [`Auto`](crate::Auto) for a body that may bind heat ([`Thermal`]). With
+    /// `false`, none is looked for unasked either.
     ///
     /// The recordings need time. Their input is a drive that heats (squared current, squared
     /// voltage, duty cycle). For given time constants, finding the weights is a convex problem. So
@@ -319,7 +324,7 @@ impl<'a> Fit<'a> {
     /// 1973).
     #[must_use]
     pub fn thermal(mut self, thermal: impl Into<Thermal>) -> Self {
-        self.thermal = thermal.into();
+        (self.thermal, self.says_thermal) = (thermal.into(), true);
         self
     }
 
