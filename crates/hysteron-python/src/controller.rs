@@ -154,8 +154,9 @@ impl Controller {
     ///     Where the target goes next, for 'anticipate'; see `headings`.
     /// ahead : array_like, shape (m,), optional
     ///     The targets at the samples after this one, as far as they are known. The inverse solves
-    ///     for the one that is `delay` samples later. With a model that has a thermal body, the drive starts before they are due. Earlier targets are missed
-    ///     by up to a tenth of the range for that.
+    ///     for the one that is `delay` samples later. With a model that has a thermal body, the
+    ///     drive starts before they are due. Earlier targets are missed by up to a tenth of the
+    ///     range for that.
     ///
     /// Returns
     /// -------

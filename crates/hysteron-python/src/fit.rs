@@ -168,10 +168,7 @@ pub(crate) fn fit(
         "load",
         "progress",
     ];
-    let mut fit = fit_with("fit", &names, (bootstrap, prior), options)?;
-    if let Some(thermal) = thermal {
-        fit = fit.thermal(thermal_of(thermal)?);
-    }
+    let mut fit = fit_with("fit", &names, (bootstrap, thermal, prior), options)?;
     let recordings = recordings_of(recording, output, time, load)?;
     let repeats = repeats.map(|repeats| recordings_alone("repeats", repeats));
     let hold_out = hold_out.map(hold_out_of).transpose()?;
@@ -262,11 +259,18 @@ pub(crate) fn left_out<'py>(
     result(py, "LeftOut", dict)
 }
 
-/// A fit with all options but those that are arguments of their own.
+/// The bootstrap, the body and the prior, which are arguments of their own.
+type Named<'a, 'py> = (
+    Option<Integer>,
+    Option<&'a Bound<'py, PyAny>>,
+    Option<PyRef<'py, WeightPrior>>,
+);
+
+/// A fit with these and all other options.
 pub(crate) fn fit_with(
     call: &str,
     names: &[&str],
-    (bootstrap, prior): (Option<Integer>, Option<PyRef<'_, WeightPrior>>),
+    (bootstrap, thermal, prior): Named<'_, '_>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Fit<'static>> {
     let defaults = FitOptions {
@@ -287,6 +291,9 @@ pub(crate) fn fit_with(
     }
     if auto.start {
         fit = fit.start(Auto);
+    }
+    if let Some(thermal) = thermal {
+        fit = fit.thermal(thermal_of(thermal)?);
     }
     if let Some(prior) = prior {
         fit = fit.prior(prior.inner.clone());
@@ -483,7 +490,7 @@ pub(crate) fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
 }
 
 /// What thermal body is to be identified.
-pub(crate) fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<Thermal> {
+fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<Thermal> {
     match value.extract::<bool>() {
         Ok(body) => Ok(body.into()),
         Err(_) => {

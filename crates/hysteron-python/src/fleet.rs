@@ -2,7 +2,7 @@
 
 use crate::convert::result;
 use crate::error::Raise;
-use crate::fit::{fit_with, hold_out_of, thermal_of};
+use crate::fit::{fit_with, hold_out_of};
 use crate::integer::Integer;
 use crate::model::Model;
 use crate::prior::WeightPrior;
@@ -112,10 +112,7 @@ pub(crate) fn fit_fleet<'py>(
         "force",
         "progress",
     ];
-    let mut fit = fit_with("fit_fleet", &names, (bootstrap, prior), options)?;
-    if let Some(thermal) = thermal {
-        fit = fit.thermal(thermal_of(thermal)?);
-    }
+    let fit = fit_with("fit_fleet", &names, (bootstrap, thermal, prior), options)?;
     let columns = Columns {
         time,
         load,

@@ -4,13 +4,8 @@ use crate::loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario};
 use hysteron::{AdaptOptions, Learner, Progress};
 use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 
-fn rmse(found: &Comparison, kind: Kind, window: usize) -> f64 {
-    let place = found.controllers.iter().position(|k| *k == kind).unwrap();
-    found.scores[place][0][window].rmse
-}
-
 /// The mean over the seeds.
-fn mean(found: &Comparison, kind: Kind, window: usize) -> f64 {
+fn rmse(found: &Comparison, kind: Kind, window: usize) -> f64 {
     let place = found.controllers.iter().position(|k| *k == kind).unwrap();
     let seeds = found.scores[place].iter();
     seeds.map(|seed| seed[window].rmse).sum::<f64>() / found.scores[place].len() as f64
@@ -88,7 +83,7 @@ fn every_learner_runs_in_a_scenario() {
         scenario.seeds = 5;
         let found = track(&scenario, Progress::NONE).unwrap();
         let last = found.windows.len() - 1;
-        let each = [Kind::AdaptivePid, Kind::InversePid].map(|kind| mean(&found, kind, last));
+        let each = [Kind::AdaptivePid, Kind::InversePid].map(|kind| rmse(&found, kind, last));
         println!("{learner:?}: {each:.3?}");
         each
     };

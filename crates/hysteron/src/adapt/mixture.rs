@@ -13,10 +13,9 @@ use super::learner::Learner;
 use super::learns::{Learns, writable};
 use super::refit::{Core, Refit};
 use super::shares::Shares;
-use super::window::TURN;
+use super::strokes::{LEAST, Strokes};
 use crate::error::Result;
 use crate::model::{Model, OperatorState};
-use crate::series::Turning;
 use hysteron_core::{Adaptation, Channel, Learning, Outcome, Reading, Watch, Watched};
 
 /// The options of the learners that [`Learner::Auto`] mixes.
@@ -51,41 +50,6 @@ struct Both {
 /// shakes a resonance that the model does not have.
 const FOLLOWED: f64 = 1.0 / 3.0;
 
-/// A stroke is worth so many samples, each by its part of the way; and a sample at least this.
-const STROKE: f64 = 50.0;
-const LEAST: f64 = 0.3;
-
-/// How far the input has gone.
-#[derive(Debug, Clone)]
-struct Travel {
-    /// Since it turned.
-    now: f64,
-    /// In the two strokes before.
-    before: [f64; 2],
-}
-
-impl Travel {
-    fn new(levels: usize) -> Self {
-        Self {
-            now: 0.0,
-            before: [levels as f64; 2],
-        }
-    }
-
-    /// Goes on by a distance. Returns what the sample counts for the stroke to come: errors of
-    /// neighbouring samples are alike, the more so the denser they are.
-    fn push(&mut self, distance: f64) -> f64 {
-        self.now += distance;
-        let [last, before] = self.before;
-        (STROKE * distance / last.max(before)).clamp(LEAST, 1.0)
-    }
-
-    fn turn(&mut self, least: f64) {
-        self.before = [self.now.max(least), self.before[0]];
-        self.now = 0.0;
-    }
-}
-
 /// What is returned to: shares, trend and model as they were when all was well.
 #[derive(Debug, Clone)]
 struct Good {
@@ -111,9 +75,7 @@ pub(super) struct Mixture {
     /// What follows the mean of the experts by the far shares.
     weights: Vec<f64>,
     offset: f64,
-    turning: Turning,
-    travel: Travel,
-    tolerance: f64,
+    strokes: Strokes,
     /// A state for weights of the past.
     there: OperatorState,
     frozen: bool,
@@ -146,7 +108,6 @@ impl Mixture {
             far: shares(),
         };
         let level = experts[0].learns.level();
-        let tolerance = TURN * model.plane().levels() as f64;
         let mixture = Self {
             watch: Watch::new(high - low, model.plane().levels() as f64),
             trusted: shares.clone(),
@@ -160,9 +121,7 @@ impl Mixture {
             trend,
             weights: model.weights().to_vec(),
             offset: level,
-            turning: Turning::new(tolerance),
-            travel: Travel::new(model.plane().levels()),
-            tolerance,
+            strokes: Strokes::new(model.plane().levels()),
             there: state,
             frozen: false,
             experts,
@@ -212,7 +171,7 @@ impl Mixture {
         let part = if self.frozen {
             LEAST
         } else {
-            self.travel.push(distance)
+            self.strokes.go(distance)
         };
         let (mut outputs, mut outcomes, mut fell_silent) = (Vec::new(), Vec::new(), false);
         for expert in &mut self.experts {
@@ -253,7 +212,7 @@ impl Mixture {
         } else if believed {
             self.judge(state, &outputs, measured, part)?;
         }
-        let turned = !self.frozen && self.turning.push(state.position()).is_some();
+        let turned = !self.frozen && self.strokes.turned(state.position());
         if turned {
             self.turn()?;
         }
@@ -302,7 +261,6 @@ impl Mixture {
 
     /// The input has turned: what is known now is kept for a judgement in strokes to come.
     fn turn(&mut self) -> Result<()> {
-        self.travel.turn(self.tolerance);
         self.refit_all()?;
         self.extrapolate()?;
         for Expert { learns, kept, .. } in &mut self.experts {
@@ -361,8 +319,7 @@ impl Mixture {
 
     /// What the experts know now is all that they are judged by.
     fn begin_anew(&mut self) -> Result<()> {
-        self.turning = Turning::new(self.tolerance);
-        self.travel.now = 0.0;
+        self.strokes.restart();
         (self.trusted, self.pending) = (self.shares.clone(), self.shares.clone());
         if let Some((refit, _)) = self.trend {
             let Expert { learns, kept, .. } = &mut self.experts[refit];
@@ -392,8 +349,7 @@ impl Mixture {
             expert.move_to(state)?;
             expert.learns.realign(&expert.state)?;
         }
-        self.turning = Turning::new(self.tolerance);
-        self.travel.now = 0.0;
+        self.strokes.restart();
         self.trust();
         Ok(())
     }

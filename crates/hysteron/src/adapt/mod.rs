@@ -24,6 +24,7 @@ mod mixture;
 mod options;
 mod refit;
 mod shares;
+mod strokes;
 mod stuck;
 mod sums;
 mod unknown_load;

@@ -88,10 +88,10 @@ impl Fit<'_> {
             shape => fit.shape = shape,
         }
         if chosen.heated {
-            fit.thermal = Thermal::Auto;
+            fit.thermal = Some(Thermal::Auto);
         }
         // A body and a dead time change places, so the dead time is looked for again.
-        if self.options.delay == Choice::Auto && fit.thermal == Thermal::None {
+        if self.options.delay == Choice::Auto && !fit.is_heated() {
             fit = fit.delay(chosen.delay);
         }
         if !chosen.rings && fit.options.dynamics == Dynamics::Auto {

@@ -50,9 +50,8 @@ pub struct Fit<'a> {
     pub(super) open: Open,
     pub(super) auto_start: bool,
     pub(super) auto_bootstrap: bool,
-    pub(super) thermal: Thermal,
-    /// Whether that was said. Then no body is looked for unasked.
-    says_thermal: bool,
+    /// What was said of a body; `None` for nothing. Then one may be looked for unasked.
+    pub(super) thermal: Option<Thermal>,
     /// How the levels follow the output, where that was chosen before.
     pub(super) shape: Option<SpacingShape>,
     /// Whether the model is tested on what is left out, even if nothing is chosen by it.
@@ -94,8 +93,7 @@ impl From<FitOptions> for Fit<'_> {
             },
             auto_start: false,
             auto_bootstrap: false,
-            thermal: Thermal::None,
-            says_thermal: false,
+            thermal: None,
             shape: None,
             tested: false,
             repeats: Vec::new(),
@@ -266,7 +264,7 @@ impl<'a> Fit<'a> {
     /// Whether a dead time or a stage that depends on time is asked for.
     pub(crate) fn asks_for_time(&self) -> bool {
         let is_late = matches!(self.options.delay, Choice::Fixed(samples) if samples > 0);
-        is_late || self.options.needs_time() || self.thermal != Thermal::None
+        is_late || self.options.needs_time() || self.is_heated()
     }
 
     /// Whether a dead time, a ring, a lag or a body that nobody asked for is looked for in recordings with
@@ -275,11 +273,15 @@ impl<'a> Fit<'a> {
         self.options.looks_for_ring() || self.options.delay == Choice::Auto
     }
 
+    /// Whether a thermal body is asked for.
+    pub(super) fn is_heated(&self) -> bool {
+        self.thermal.unwrap_or_default() != Thermal::None
+    }
+
     /// Whether a thermal body that nobody asked for is looked for.
     fn looks_for_body(&self) -> bool {
         let is_open = self.options.dynamics == Dynamics::Auto && !self.options.asks_after();
-        let is_said = self.says_thermal || self.thermal != Thermal::None;
-        is_open && !is_said && self.prior.is_none()
+        is_open && self.thermal.is_none() && self.prior.is_none()
     }
 
     /// Looks for nothing of them.
@@ -324,7 +326,7 @@ impl<'a> Fit<'a> {
     /// 1973).
     #[must_use]
     pub fn thermal(mut self, thermal: impl Into<Thermal>) -> Self {
-        (self.thermal, self.says_thermal) = (thermal.into(), true);
+        self.thermal = Some(thermal.into());
         self
     }
 
@@ -401,10 +403,10 @@ impl<'a> Fit<'a> {
             let again = |recordings: &[Recording], again: Again, progress: Progress<'_>| {
                 let mut fit = self.clone().progress(progress);
                 fit.tested = true;
-                if again.body {
-                    fit.thermal = Thermal::Auto;
+                if again != Again::Cold {
+                    fit.thermal = Some(Thermal::Auto);
                 }
-                if !again.bootstrap {
+                if again != Again::Warm {
                     (fit.auto_bootstrap, fit.options.bootstrap) = (false, 0);
                 }
                 fit.timed(recordings)
@@ -434,9 +436,9 @@ impl<'a> Fit<'a> {
     fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         let at_once = self.acting(recordings)?;
         // A body and a dead time change places, so what is behind the body tells.
-        let behind: Cow<'_, [Recording]> = match self.thermal {
-            Thermal::None => Cow::Borrowed(recordings),
-            _ => {
+        let behind: Cow<'_, [Recording]> = match self.is_heated() {
+            false => Cow::Borrowed(recordings),
+            true => {
                 let behind = recordings.iter().map(|r| at_once.behind_body(r));
                 Cow::Owned(behind.map(|r| Ok(r?.into_owned())).collect::<Result<_>>()?)
             }
@@ -489,8 +491,8 @@ impl<'a> Fit<'a> {
             stages::check_time(recordings)?;
         }
         // A body and a load change what the operators see of the first sample.
-        let heated = self.thermal != Thermal::None;
-        let plain = !heated && recordings.iter().all(|recording| recording.load.is_none());
+        let plain =
+            !self.is_heated() && recordings.iter().all(|recording| recording.load.is_none());
         if let (true, Some(prior)) = (self.auto_start, &self.prior) {
             options.start = prior.start();
         } else if self.auto_start {
@@ -519,7 +521,7 @@ impl<'a> Fit<'a> {
             Some(prior) => prior.fit(&seen, &options, self.progress)?,
             None => {
                 let asked = Asked {
-                    thermal: self.thermal,
+                    thermal: self.thermal.unwrap_or_default(),
                     open: self.open,
                     auto_bootstrap: self.auto_bootstrap,
                     shape: self.shape,

@@ -1,7 +1,7 @@
 //! Looks for a thermal body in front of the operators that nobody asked for.
 
 use crate::error::{Error, Result};
-use crate::identify::stages::{step_of, with_right_input};
+use crate::identify::stages::{step_of, time_passes, with_right_input};
 use crate::model::{Delay, FitSummary, Model, Validation};
 use crate::progress::{Progress, ended_by_callback};
 use crate::recording::Recording;
@@ -27,12 +27,14 @@ const FEW: f64 = 0.02;
 const WITHOUT: &str = "without_body";
 
 /// How a fit is run again.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Again {
-    /// With a thermal body.
-    pub(super) body: bool,
-    /// With the bootstrap of the fit, or with none.
-    pub(super) bootstrap: bool,
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Again {
+    /// As it is, and without a bootstrap.
+    Cold,
+    /// With a body, and without a bootstrap.
+    Trial,
+    /// With a body.
+    Warm,
 }
 
 /// Runs a fit again, tested on what is left out. Returns its model and the dead time.
@@ -50,73 +52,62 @@ pub(super) fn or_cold(
     run: Run<'_>,
     progress: Progress<'_>,
 ) -> Result<(Model, Delay)> {
-    if validation(&cold.0).is_some_and(|without| without.nrmse_percent < WELL) {
+    let tested;
+    let judged = match validation(&cold.0) {
+        Some(_) => &cold.0,
+        None => {
+            tested = run(recordings, Again::Cold, progress)?.0;
+            &tested
+        }
+    };
+    if !may_gain(judged) {
         return Ok(cold);
     }
-    // A wrong reading of the input moves a model at once and the output not at all, as if something
-    // heated. So a body has to be there without it, too.
+    if let Some(right) = without_wrong_input(recordings) {
+        let plain = run(&right, Again::Cold, progress)?.0;
+        if better(&right, &plain, Again::Trial, run, progress)?.is_none() {
+            return Ok(cold);
+        }
+    }
+    let warm = better(recordings, judged, Again::Warm, run, progress)?;
+    Ok(warm.unwrap_or(cold))
+}
+
+/// Whether recordings can show a body.
+pub(super) fn can_show(recordings: &[Recording]) -> bool {
+    let shows = |one: &Recording| one.load.is_none() && time_passes(one);
+    recordings.iter().all(shows)
+}
+
+/// The recordings with lines in place of a few wrong readings of the input; `None` without any. A
+/// wrong reading moves a model at once and the output not at all, as if something heated. So a body
+/// has to be there without it, too.
+fn without_wrong_input(recordings: &[Recording]) -> Option<Vec<Recording>> {
     let right: Vec<Recording> = recordings.iter().map(with_right_input).collect();
     let wrong = right.iter().zip(recordings).map(|(right, read)| {
         let pairs = right.input.iter().zip(&read.input);
         pairs.filter(|(right, read)| right != read).count()
     });
     let (wrong, all): (usize, usize) = (wrong.sum(), recordings.iter().map(Recording::len).sum());
-    if wrong > 0 && (wrong as f64) < FEW * all as f64 {
-        let trial = |recordings: &[Recording], again: Again, progress: Progress<'_>| {
-            let bootstrap = false;
-            run(recordings, Again { bootstrap, ..again }, progress)
-        };
-        let again = Again {
-            body: false,
-            bootstrap: false,
-        };
-        let plain = run(&right, again, progress)?;
-        if better(&right, plain, &trial, progress)?.0.thermal.is_none() {
-            return Ok(cold);
-        }
-    }
-    better(recordings, cold, run, progress)
+    (wrong > 0 && (wrong as f64) < FEW * all as f64).then_some(right)
 }
 
-/// Whether recordings can show a body.
-pub(super) fn can_show(recordings: &[Recording]) -> bool {
-    let rises = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
-    let is_timed = |one: &Recording| one.time.as_ref().is_some_and(rises);
-    recordings
-        .iter()
-        .all(|one| one.load.is_none() && is_timed(one))
-}
-
-/// The better one of both.
+/// The model with a body, where it is better than the `cold` one.
 fn better(
     recordings: &[Recording],
-    cold: (Model, Delay),
+    cold: &Model,
+    again: Again,
     run: Run<'_>,
     progress: Progress<'_>,
-) -> Result<(Model, Delay)> {
-    let judged = match validation(&cold.0) {
-        Some(_) => cold.0.clone(),
-        None => {
-            let again = Again {
-                body: false,
-                bootstrap: false,
-            };
-            run(recordings, again, progress)?.0
-        }
-    };
-    let without = validation(&judged).map(|without| without.nrmse_percent);
-    let Some(without) = without.filter(|error| *error >= WELL) else {
-        return Ok(cold);
-    };
-    let again = Again {
-        body: true,
-        bootstrap: true,
-    };
+) -> Result<Option<(Model, Delay)>> {
+    if !may_gain(cold) {
+        return Ok(None);
+    }
     let found = ended_by_callback(progress, |progress| Ok(run(recordings, again, progress)))?;
     let (mut warm, delay) = match found {
         // No body keeps the operators inside the plane.
         Err(error) if matches!(error.parts().0, Error::Fit(_) | Error::Thermal(_)) => {
-            return Ok(cold);
+            return Ok(None);
         }
         found => found?,
     };
@@ -125,14 +116,19 @@ fn better(
     let is_seen = warm
         .thermal
         .is_some_and(|body| body.tau_heating.min(body.tau_cooling) > STEPS * step);
-    if !(is_seen && is_worth(&warm, &judged)) {
-        return Ok(cold);
+    if !(is_seen && is_worth(&warm, cold)) {
+        return Ok(None);
     }
-    if let Some(fit) = &mut warm.fit {
-        let without = json!(without);
+    if let (Some(fit), Some(without)) = (&mut warm.fit, validation(cold)) {
+        let without = json!(without.nrmse_percent);
         fit.other.insert(WITHOUT.to_owned(), without);
     }
-    Ok((warm, delay))
+    Ok(Some((warm, delay)))
+}
+
+/// Whether a model errs enough on what was left out for a body to gain something.
+fn may_gain(model: &Model) -> bool {
+    validation(model).is_some_and(|found| found.nrmse_percent >= WELL)
 }
 
 fn validation(model: &Model) -> Option<&Validation> {

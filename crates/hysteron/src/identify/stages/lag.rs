@@ -1,7 +1,7 @@
 //! Looks for a lag that nobody asked for.
 
 use super::after::Report;
-use super::search::{Search, WORTH, step_of};
+use super::search::{Search, WORTH, step_of, time_passes};
 use super::undone::After;
 use crate::error::Result;
 use crate::identify::changed::few_in_time;
@@ -33,9 +33,7 @@ pub(super) fn find(
     open: Open,
     progress: Progress<'_>,
 ) -> Result<Option<(After, Report)>> {
-    let passes = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
-    let passes = |recording: &Recording| recording.time.as_ref().is_some_and(passes);
-    if !recordings.iter().all(passes) {
+    if !recordings.iter().all(time_passes) {
         return Ok(None);
     }
     // A wrong reading of the input moves the model at once and the output not at all: as if it came

@@ -21,7 +21,7 @@ mod undone;
 
 pub(crate) use lag::with_right_input;
 use latent::Heated;
-pub(crate) use search::step_of;
+pub(crate) use search::{step_of, time_passes};
 pub use spacing::SpacingShape;
 #[cfg(feature = "data")]
 pub(crate) use spacing::shape_of as spacing_shape;

@@ -125,6 +125,12 @@ pub(super) struct Search<'a> {
     longest: f64,
 }
 
+/// Whether the recording has a time in which no two samples come at once.
+pub(crate) fn time_passes(recording: &Recording) -> bool {
+    let passes = |time: &Vec<f64>| time.windows(2).all(|pair| pair[1] > pair[0]);
+    recording.time.as_ref().is_some_and(passes)
+}
+
 /// The mean sampling step; endless without a time.
 pub(crate) fn step_of(recording: &Recording) -> f64 {
     let steps = recording.len().max(2).saturating_sub(1) as f64;
