@@ -411,7 +411,7 @@ impl<'a> Fit<'a> {
                 }
                 fit.timed(recordings)
             };
-            found = heated::or_cold(recordings, found, &again, self.progress)?;
+            found = heated::or_cold(recordings, &self.options, found, &again, self.progress)?;
         }
         let (mut model, delay) = found;
         widen(&mut model, &delay.of_recordings(&self.repeats))?;

@@ -1,7 +1,8 @@
 //! Looks for a thermal body in front of the operators that nobody asked for.
 
 use crate::error::{Error, Result};
-use crate::identify::stages::{step_of, time_passes, with_right_input};
+use crate::identify::options::FitOptions;
+use crate::identify::stages::{may_heat, step_of, time_passes, with_right_input};
 use crate::model::{Delay, FitSummary, Model, Validation};
 use crate::progress::{Progress, ended_by_callback};
 use crate::recording::Recording;
@@ -48,6 +49,7 @@ pub(super) type Run<'a> = &'a dyn Fn(&[Recording], Again, Progress<'_>) -> Resul
 /// Those of `run`, and of the callback of `progress`.
 pub(super) fn or_cold(
     recordings: &[Recording],
+    options: &FitOptions,
     cold: (Model, Delay),
     run: Run<'_>,
     progress: Progress<'_>,
@@ -60,7 +62,8 @@ pub(super) fn or_cold(
             &tested
         }
     };
-    if !may_gain(judged) {
+    // A look at a few time constants costs little beside a search for both, and for bound heat.
+    if !may_gain(judged) || !may_heat(recordings, options, WORTH, progress)? {
         return Ok(cold);
     }
     if let Some(right) = without_wrong_input(recordings) {

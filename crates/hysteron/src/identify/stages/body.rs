@@ -5,7 +5,7 @@ use crate::identify::changed::thin;
 use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::nelder_mead::minimise;
-use crate::model::{FirstOrder, needs_time};
+use crate::model::{FirstOrder, Start, needs_time};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
@@ -56,7 +56,7 @@ pub(super) fn find(
 ) -> Result<(FirstOrder, bool)> {
     let search = Search::new(recordings, options, progress)?;
     let (two, least) = search.best(|taus: &[f64; 2]| *taus)?;
-    let told_apart = search.least_beside(&two)? > RESOLVED * least;
+    let told_apart = search.all_beside_exceed(&two, RESOLVED * least)?;
     let [tau_heating, tau_cooling] = match told_apart {
         true => two,
         false => search.best(|[tau]: &[f64; 1]| [*tau; 2])?.0,
@@ -67,6 +67,29 @@ pub(super) fn find(
         ..FirstOrder::default()
     };
     Ok((body, told_apart))
+}
+
+/// Whether recordings look at all as if their input heats: with a common time constant in front of
+/// the operators, what is fitted is followed better by this share.
+///
+/// # Errors
+/// As [`find`].
+pub(in crate::identify) fn may_heat(
+    recordings: &[Recording],
+    options: &FitOptions,
+    share: f64,
+    progress: Progress<'_>,
+) -> Result<bool> {
+    // From any start, which is not known here.
+    let options = FitOptions {
+        start: Start::Unknown,
+        ..options.clone()
+    };
+    let search = Search::new(recordings, &options, progress)?;
+    let thinned: Vec<Recording> = recordings.iter().map(|r| search.thinned(r)).collect();
+    let cold = fit_weights(&thinned, &search.options, Progress::NONE)?;
+    let (_, warm) = search.best_of_grid(|[tau]: &[f64; 1]| [*tau; 2])?;
+    Ok(cold.fit.is_some_and(|cold| warm < share * cold.rmse))
 }
 
 pub(super) struct Search<'a> {
@@ -150,34 +173,56 @@ impl<'a> Search<'a> {
         &self,
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],
     ) -> Result<([f64; 2], f64)> {
+        let (start, _) = self.best_of_grid(&logarithms)?;
+        let value = |point: &[f64; N]| self.rmse_inside(point, &logarithms);
+        let (point, rmse) = minimise(start, 0.5 * GRID.ln(), TOLERANCE, STEPS, value)?;
+        Ok((logarithms(&point).map(f64::exp), rmse))
+    }
+
+    /// The best point of a grid, and its RMSE.
+    fn best_of_grid<const N: usize>(
+        &self,
+        logarithms: impl Fn(&[f64; N]) -> [f64; 2],
+    ) -> Result<([f64; N], f64)> {
         let (low, high) = self.bounds;
-        let value = |point: &[f64; N]| match point.iter().all(|tau| self.has(*tau)) {
-            true => self.rmse(logarithms(point)),
-            false => Ok(f64::INFINITY),
-        };
         let points = 1 + ((high - low) / GRID.ln()) as usize;
         let mut best = ([low; N], f64::INFINITY);
         for number in 0..points.pow(N as u32) {
             let place = |axis: usize| number / points.pow(axis as u32) % points;
             let point = std::array::from_fn(|axis| low + place(axis) as f64 * GRID.ln());
-            let rmse = value(&point)?;
+            let rmse = self.rmse_inside(&point, &logarithms)?;
             if rmse < best.1 {
                 best = (point, rmse);
             }
         }
-        let (point, rmse) = minimise(best.0, 0.5 * GRID.ln(), TOLERANCE, STEPS, value)?;
-        Ok((logarithms(&point).map(f64::exp), rmse))
+        Ok(best)
     }
 
-    /// The smallest RMSE with either time constant halved or doubled, and the other one free.
-    fn least_beside(&self, taus: &[f64; 2]) -> Result<f64> {
-        let mut least = f64::INFINITY;
+    /// The RMSE at a point; endless outside what is searched.
+    fn rmse_inside<const N: usize>(
+        &self,
+        point: &[f64; N],
+        logarithms: impl Fn(&[f64; N]) -> [f64; 2],
+    ) -> Result<f64> {
+        match point.iter().all(|tau| self.has(*tau)) {
+            true => self.rmse(logarithms(point)),
+            false => Ok(f64::INFINITY),
+        }
+    }
+
+    /// Whether every body with either time constant halved or doubled, and the other one free, has
+    /// an RMSE above `most`. The first one that has not is enough, and the grid often has it.
+    fn all_beside_exceed(&self, taus: &[f64; 2], most: f64) -> Result<bool> {
         for factor in [0.5, 2.0] {
             let [heating, cooling] = taus.map(|tau| (factor * tau).ln());
-            let (_, beside_heating) = self.best(|[other]: &[f64; 1]| [heating, *other])?;
-            let (_, beside_cooling) = self.best(|[other]: &[f64; 1]| [*other, cooling])?;
-            least = least.min(beside_heating).min(beside_cooling);
+            let lines: [&dyn Fn(&[f64; 1]) -> [f64; 2]; 2] =
+                [&|[other]| [heating, *other], &|[other]| [*other, cooling]];
+            for line in lines {
+                if self.best_of_grid(line)?.1 <= most || self.best(line)?.1 <= most {
+                    return Ok(false);
+                }
+            }
         }
-        Ok(least)
+        Ok(true)
     }
 }

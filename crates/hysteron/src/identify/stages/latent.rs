@@ -146,21 +146,24 @@ pub(super) fn find(
         }
     }
     // Without heat from both starts: another time constant alone may do as much.
-    let starts = [taus, [point[0], point[1]]].into_iter();
-    let without = starts.map(|taus| match told_apart {
-        true => Ok(least(taus, |[heating, cooling]| value([heating, cooling, 0.0]))?.1),
-        false => Ok(least([taus[0]], |[tau]| value([tau, tau, 0.0]))?.1),
-    });
-    let without = without.collect::<Result<Vec<f64>>>()?;
-    let without = without.into_iter().fold(f64::INFINITY, f64::min);
+    let mut without = f64::INFINITY;
+    for [heating, cooling] in [taus, [point[0], point[1]]] {
+        let alone = match told_apart {
+            true => least([heating, cooling], |[a, b]| value([a, b, 0.0]))?.1,
+            false => least([heating], |[tau]| value([tau, tau, 0.0]))?.1,
+        };
+        without = without.min(alone);
+        if with >= (1.0 - WORTH) * without {
+            return Ok(None);
+        }
+    }
     let percent = 100.0 / (high - low);
     let report = Report {
         without: percent * without,
         with: percent * with,
     };
-    let worth = report.with < (1.0 - WORTH) * report.without;
     let heated = of(point);
-    Ok(worth.then_some(Binding { heated, report }))
+    Ok(Some(Binding { heated, report }))
 }
 
 /// The least value near a point, and where it is.

@@ -19,6 +19,7 @@ mod search;
 mod spacing;
 mod undone;
 
+pub(super) use body::may_heat;
 pub(crate) use lag::with_right_input;
 use latent::Heated;
 pub(crate) use search::{step_of, time_passes};
