@@ -107,7 +107,7 @@ fn every_view_answers_the_hand(way: Way) {
     // Plotly takes a click for one on what it hovers over, and a plane that is drawn anew drops that.
     // What comes late on the page may move it. Where an operator switches at the sample that play
     // ended at, another one does not.
-    let chosen = (0..40).any(|n| {
+    let chosen = (0..10).any(|n| {
         let place = [(0.2, 0.6), (0.2, 0.3)][n % 2];
         let cell = browser.points(&tab, "#plot-plane .nsewdrag", &[place])[0];
         browser.point(&tab, cell);

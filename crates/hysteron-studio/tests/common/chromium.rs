@@ -219,7 +219,9 @@ impl Chromium {
             self.call(Some(tab), "Input.dispatchMouseEvent", params);
         };
         send("mousePressed", points[0]);
-        for point in points {
+        // A click does not move: Plotly drops what it hovers over, and takes up to 50 ms to find it
+        // again, in which it knows of no click.
+        for point in &points[1..] {
             send("mouseMoved", *point);
         }
         send("mouseReleased", points[points.len() - 1]);
