@@ -87,8 +87,11 @@ impl Fit<'_> {
             None => fit = fit.spacing(Spacing::Uniform),
             shape => fit.shape = shape,
         }
-        if chosen.heated {
-            fit.thermal = Some(Thermal::Auto);
+        if fit.thermal.is_none() {
+            fit.thermal = Some(match chosen.heated {
+                true => Thermal::Auto,
+                false => Thermal::None,
+            });
         }
         // A body and a dead time change places, so the dead time is looked for again.
         if self.options.delay == Choice::Auto && !fit.is_heated() {

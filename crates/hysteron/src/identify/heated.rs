@@ -27,6 +27,9 @@ const FEW: f64 = 0.02;
 /// What the record of a body says of the error without it.
 const WITHOUT: &str = "without_body";
 
+/// What the record says where one was looked for and not taken.
+const NONE_FOUND: &str = "no_body";
+
 /// How a fit is run again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Again {
@@ -62,18 +65,38 @@ pub(super) fn or_cold(
             &tested
         }
     };
-    // A look at a few time constants costs little beside a search for both, and for bound heat.
-    if !may_gain(judged) || !may_heat(recordings, options, WORTH, progress)? {
+    if !may_gain(judged) {
         return Ok(cold);
+    }
+    if let Some(warm) = warm(recordings, options, judged, run, progress)? {
+        return Ok(warm);
+    }
+    let (mut model, delay) = cold;
+    if let Some(fit) = &mut model.fit {
+        fit.other.insert(NONE_FOUND.to_owned(), json!(true));
+    }
+    Ok((model, delay))
+}
+
+/// The model with a body, where it is better than the `cold` one.
+fn warm(
+    recordings: &[Recording],
+    options: &FitOptions,
+    cold: &Model,
+    run: Run<'_>,
+    progress: Progress<'_>,
+) -> Result<Option<(Model, Delay)>> {
+    // A look at a few time constants costs little beside a search for both, and for bound heat.
+    if !may_heat(recordings, options, WORTH, progress)? {
+        return Ok(None);
     }
     if let Some(right) = without_wrong_input(recordings) {
         let plain = run(&right, Again::Cold, progress)?.0;
         if better(&right, &plain, Again::Trial, run, progress)?.is_none() {
-            return Ok(cold);
+            return Ok(None);
         }
     }
-    let warm = better(recordings, judged, Again::Warm, run, progress)?;
-    Ok(warm.unwrap_or(cold))
+    better(recordings, cold, Again::Warm, run, progress)
 }
 
 /// Whether recordings can show a body.
@@ -95,7 +118,7 @@ fn without_wrong_input(recordings: &[Recording]) -> Option<Vec<Recording>> {
     (wrong > 0 && (wrong as f64) < FEW * all as f64).then_some(right)
 }
 
-/// The model with a body, where it is better than the `cold` one.
+/// The model of a run with a body, where it is better than the `cold` one.
 fn better(
     recordings: &[Recording],
     cold: &Model,
@@ -159,5 +182,10 @@ impl FitSummary {
     #[must_use]
     pub fn error_without_body(&self) -> Option<f64> {
         self.other.get(WITHOUT)?.as_f64()
+    }
+
+    /// Whether a thermal body that nobody asked for was looked for, and none was taken.
+    pub(crate) fn found_no_body(&self) -> bool {
+        self.other.contains_key(NONE_FOUND)
     }
 }

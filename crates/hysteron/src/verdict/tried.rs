@@ -8,6 +8,8 @@ use crate::recording::Recording;
 pub(super) struct Tried {
     pub(super) creep: bool,
     pub(super) thermal: bool,
+    /// Whether it has a body.
+    pub(super) body: bool,
     pub(super) sensor_lag: bool,
 }
 
@@ -18,7 +20,9 @@ impl Tried {
             |fit: &FitSummary| fit.other.get(AFTER).is_some_and(|it| it["creep"] != false);
         Self {
             creep: !model.creep().is_empty() || model.fit.as_ref().is_some_and(looked_for),
-            thermal: model.thermal.is_some(),
+            thermal: model.thermal.is_some()
+                || model.fit.as_ref().is_some_and(FitSummary::found_no_body),
+            body: model.thermal.is_some(),
             sensor_lag: recordings
                 .iter()
                 .any(|recording| recording.undone.is_some()),
@@ -30,12 +34,12 @@ impl Tried {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::identify::{Choice, Fit};
+    use crate::identify::{Choice, Dynamics, Fit};
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
-    /// A play, at several speeds, whose output comes late.
-    fn late(seed: u64) -> Recording {
+    /// A play, at several speeds, whose output comes late by so many samples, with this noise.
+    fn play(seed: u64, lag: f64, noise: f64) -> Recording {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut share = || f64::from(random.next_u32()) / f64::from(u32::MAX);
         let mut input = vec![20.0_f64];
@@ -48,8 +52,8 @@ mod tests {
         let (mut rest, mut output) = (20.0_f64, 20.0);
         let follow = |x: &f64| {
             rest = rest.clamp(x - 5.0, x + 5.0);
-            output += (rest - output) / 5.0;
-            output + 0.01 * (share() - 0.5)
+            output += (rest - output) / (1.0 + lag);
+            output + noise * (share() - 0.5)
         };
         let output = input.iter().map(follow).collect();
         let mut recording = Recording::new(input, output).unwrap();
@@ -60,7 +64,7 @@ mod tests {
     #[test]
     fn creep_was_tried_only_where_it_was_asked_for() {
         for seed in 0..2 {
-            let recording = late(seed);
+            let recording = play(seed, 4.0, 0.01);
             let model = Fit::new().bootstrap(0).run(&recording).unwrap();
             assert!(model.lag() > 0.0, "seed {seed}");
             let recordings = std::slice::from_ref(&recording);
@@ -68,6 +72,21 @@ mod tests {
             let asked = Fit::new().bootstrap(0).creep(Choice::Auto);
             let model = asked.run(&recording).unwrap();
             assert!(Tried::by(&model, recordings).creep, "seed {seed}");
+        }
+    }
+
+    /// Noise of 2 % of the range leaves room for a body, and there is none.
+    #[test]
+    fn a_body_that_was_not_found_is_no_advice() {
+        for seed in 0..2 {
+            let recording = play(seed, 0.0, 4.0);
+            let model = Fit::new().bootstrap(0).run(&recording).unwrap();
+            let tried = Tried::by(&model, std::slice::from_ref(&recording));
+            assert!(tried.thermal && !tried.body, "seed {seed}");
+            let unasked = Fit::new().bootstrap(0).dynamics(Dynamics::Off);
+            let model = unasked.run(&recording).unwrap();
+            let tried = Tried::by(&model, std::slice::from_ref(&recording));
+            assert!(!tried.thermal, "seed {seed}");
         }
     }
 }

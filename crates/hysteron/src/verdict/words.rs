@@ -317,7 +317,7 @@ impl Verdict {
                         Setting::word("solver", "ols"),
                     ],
                 ),
-                PartKind::Late if self.tried.thermal => Remedy::new(
+                PartKind::Late if self.tried.body => Remedy::new(
                     "fit this recording together with the one fitted: the body was found from that \
                      one alone",
                     [],
@@ -361,7 +361,7 @@ impl Verdict {
                 "undo it here too, with {} and that time constant",
                 [Setting::any("sensor-lag")],
             ),
-            Some(Cause::OtherSpeed { late: true, .. }) if self.tried.thermal => Remedy::new(
+            Some(Cause::OtherSpeed { late: true, .. }) if self.tried.body => Remedy::new(
                 "fit both recordings together, so that there are several speeds",
                 [],
             ),
