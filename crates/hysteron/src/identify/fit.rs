@@ -281,7 +281,13 @@ impl<'a> Fit<'a> {
     /// Whether a thermal body that nobody asked for is looked for.
     fn looks_for_body(&self) -> bool {
         let is_open = self.options.dynamics == Dynamics::Auto && !self.options.asks_after();
-        is_open && self.thermal.is_none() && self.prior.is_none()
+        // A rest is found for a model without a body.
+        is_open && self.thermal.is_none() && self.prior.is_none() && !self.finds_rest()
+    }
+
+    /// Whether a start at rest is asked for, and where the rest was is left to the data.
+    fn finds_rest(&self) -> bool {
+        !self.auto_start && self.options.start == Start::Rest && self.options.rest.is_none()
     }
 
     /// Looks for nothing of them.
@@ -443,7 +449,14 @@ impl<'a> Fit<'a> {
                 Cow::Owned(behind.map(|r| Ok(r?.into_owned())).collect::<Result<_>>()?)
             }
         };
-        let delay = delay::find(&behind, &self.options, self.progress)?;
+        let options = match self.finds_rest() {
+            true => &FitOptions {
+                start: Start::Unknown,
+                ..self.options.clone()
+            },
+            false => &self.options,
+        };
+        let delay = delay::find(&behind, options, self.progress)?;
         if delay.is_none() {
             return Ok((at_once, delay));
         }

@@ -173,3 +173,26 @@ fn with_a_load_there_is_no_rest() {
         "{refused}"
     );
 }
+
+/// A dead time, a ring, a lag and a body are looked for in a recording with time, whatever start is
+/// asked for.
+#[test]
+fn every_start_is_fitted_with_time_too() {
+    let rng = &mut ChaCha8Rng::seed_from_u64(11);
+    for noise in [0.0, 0.05] {
+        let mut recording = recorded(&plant(rng), &[0.3], 0.5);
+        let (low, high) = range(&recording.output);
+        for y in &mut recording.output {
+            *y += noise * (high - low) * rng.random_range(-1.0..1.0);
+        }
+        let mut timed = recording.clone();
+        timed.time = Some((0..timed.len()).map(|n| 0.1 * n as f64).collect());
+        for start in [Start::Off, Start::On, Start::Rest, Start::Unknown] {
+            for recording in [&recording, &timed] {
+                let found = Fit::new().bootstrap(0).start(start).run(recording);
+                let fit = found.unwrap().fit.unwrap();
+                assert_eq!(fit.start, start);
+            }
+        }
+    }
+}
