@@ -213,14 +213,14 @@ impl<'a> Search<'a> {
     /// Whether every body with either time constant halved or doubled, and the other one free, has
     /// an RMSE above `most`. The first one that has not is enough, and the grid often has it.
     fn all_beside_exceed(&self, taus: &[f64; 2], most: f64) -> Result<bool> {
-        for factor in [0.5, 2.0] {
+        for (factor, is_heating) in [(0.5, true), (0.5, false), (2.0, true), (2.0, false)] {
             let [heating, cooling] = taus.map(|tau| (factor * tau).ln());
-            let lines: [&dyn Fn(&[f64; 1]) -> [f64; 2]; 2] =
-                [&|[other]| [heating, *other], &|[other]| [*other, cooling]];
-            for line in lines {
-                if self.best_of_grid(line)?.1 <= most || self.best(line)?.1 <= most {
-                    return Ok(false);
-                }
+            let line = |[other]: &[f64; 1]| match is_heating {
+                true => [heating, *other],
+                false => [*other, cooling],
+            };
+            if self.best_of_grid(line)?.1 <= most || self.best(line)?.1 <= most {
+                return Ok(false);
             }
         }
         Ok(true)
