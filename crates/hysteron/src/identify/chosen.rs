@@ -4,7 +4,7 @@
 use crate::identify::fit::Fit;
 use crate::identify::options::{Choice, Dynamics, Spacing, Thermal};
 use crate::identify::stages::{SpacingShape, spacing_shape};
-use crate::model::{Model, Smooth, Start};
+use crate::model::{FitSummary, Model, Smooth, Start};
 use crate::recording::Recording;
 use serde::Serialize;
 
@@ -34,13 +34,11 @@ impl Chosen {
     /// What the fit of this model to the recording chose.
     pub(crate) fn of(model: &Model, recording: &Recording) -> Self {
         let fit = model.fit.as_ref();
-        let start = fit.map_or(Start::Off, |fit| fit.start);
-        let rest = fit.and_then(|fit| serde_json::from_value(fit.other.get("rest")?.clone()).ok());
         Self {
             levels: model.plane().levels(),
             smooth: fit.map_or(Smooth::NONE, |fit| fit.smooth),
-            start,
-            rest: rest.filter(|_| start == Start::Rest),
+            start: fit.map_or(Start::Off, |fit| fit.start),
+            rest: fit.and_then(FitSummary::rest),
             spacing: spacing_shape(model, recording),
             delay: model.delay().samples(),
             rings: fit.is_some_and(|fit| fit.other.contains_key("ring")),
@@ -118,5 +116,29 @@ impl Fit<'_> {
     /// Whether there is a bootstrap.
     pub(crate) fn has_bootstrap(&self) -> bool {
         self.auto_bootstrap || self.options.bootstrap > 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_is_looked_for_as_the_pilots_found_it() {
+        let chosen = |heated| Chosen {
+            levels: 10,
+            smooth: Smooth::NONE,
+            start: Start::Off,
+            rest: None,
+            spacing: None,
+            delay: 0,
+            rings: false,
+            heated,
+        };
+        for (heated, body) in [(true, Thermal::Auto), (false, Thermal::None)] {
+            assert_eq!(Fit::new().sharing(&chosen(heated)).thermal, Some(body));
+            let said = Fit::new().thermal(true).sharing(&chosen(heated));
+            assert_eq!(said.thermal, Some(Thermal::FirstOrder));
+        }
     }
 }

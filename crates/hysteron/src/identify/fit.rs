@@ -267,8 +267,8 @@ impl<'a> Fit<'a> {
         is_late || self.options.needs_time() || self.is_heated()
     }
 
-    /// Whether a dead time, a ring, a lag or a body that nobody asked for is looked for in recordings with
-    /// time and without a load.
+    /// Whether a dead time, a ring, a lag or a body that nobody asked for is looked for in recordings
+    /// with time and without a load.
     pub(crate) fn looks_for_dynamics(&self) -> bool {
         self.options.looks_for_ring() || self.options.delay == Choice::Auto
     }
@@ -290,7 +290,7 @@ impl<'a> Fit<'a> {
         !self.auto_start && self.options.start == Start::Rest && self.options.rest.is_none()
     }
 
-    /// Looks for nothing of them.
+    /// The same fit, which looks for no dynamics that nobody asked for.
     pub(crate) fn without_auto_dynamics(mut self) -> Self {
         if self.options.dynamics == Dynamics::Auto {
             self.options.dynamics = Dynamics::Off;
@@ -441,22 +441,23 @@ impl<'a> Fit<'a> {
     /// A coarse grid takes a narrow loop for a dead time.
     fn delayed(&self, recordings: &[Recording]) -> Result<(Model, Delay)> {
         let at_once = self.acting(recordings)?;
-        // A body and a dead time change places, so what is behind the body tells.
-        let behind: Cow<'_, [Recording]> = match self.is_heated() {
-            false => Cow::Borrowed(recordings),
+        // Outliers would hide a dead time. A body and it change places, so what is behind the body
+        // tells.
+        let outliers = at_once.fit.as_ref().map_or(&[][..], |fit| &fit.outliers);
+        let mended = outliers::moved(recordings, outliers);
+        let behind = match self.is_heated() {
+            false => mended,
             true => {
-                let behind = recordings.iter().map(|r| at_once.behind_body(r));
+                let behind = mended.iter().map(|r| at_once.behind_body(r));
                 Cow::Owned(behind.map(|r| Ok(r?.into_owned())).collect::<Result<_>>()?)
             }
         };
-        let options = match self.finds_rest() {
-            true => &FitOptions {
-                start: Start::Unknown,
-                ..self.options.clone()
-            },
-            false => &self.options,
-        };
-        let delay = delay::find(&behind, options, self.progress)?;
+        let mut options = self.options.clone();
+        let fit = at_once.fit.as_ref();
+        if let (Start::Rest, None, Some(fit)) = (options.start, options.rest, fit) {
+            (options.start, options.rest) = (fit.start, fit.rest());
+        }
+        let delay = delay::find(&behind, &options, self.progress)?;
         if delay.is_none() {
             return Ok((at_once, delay));
         }

@@ -1,7 +1,9 @@
 //! Looks for a thermal body in front of the operators that nobody asked for.
 
 use crate::error::{Error, Result};
-use crate::identify::options::FitOptions;
+use crate::identify::delay;
+use crate::identify::options::{Choice, FitOptions};
+use crate::identify::outliers::moved;
 use crate::identify::stages::{may_heat, step_of, time_passes, with_right_input};
 use crate::model::{Delay, FitSummary, Model, Validation};
 use crate::progress::{Progress, ended_by_callback};
@@ -86,8 +88,18 @@ fn warm(
     run: Run<'_>,
     progress: Progress<'_>,
 ) -> Result<Option<(Model, Delay)>> {
-    // A look at a few time constants costs little beside a search for both, and for bound heat.
-    if !may_heat(recordings, options, WORTH, progress)? {
+    // A look at a few time constants costs little beside a search for both, and for bound heat. What
+    // cannot be looked at is searched.
+    let late = match options.delay {
+        Choice::Fixed(samples) => delay::fixed(samples, recordings)?,
+        Choice::Auto => Delay::NONE,
+    };
+    let outliers = cold.fit.as_ref().map_or(&[][..], |fit| &fit.outliers);
+    let seen = late.of_recordings(recordings);
+    let looked = ended_by_callback(progress, |progress| {
+        Ok(may_heat(&moved(&seen, outliers), options, WORTH, progress))
+    })?;
+    if matches!(looked, Ok(false)) {
         return Ok(None);
     }
     if let Some(right) = without_wrong_input(recordings) {

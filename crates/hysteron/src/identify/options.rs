@@ -284,7 +284,8 @@ impl FitOptions {
 
     /// Whether creep or a lag after the operators is asked for.
     pub(crate) fn asks_after(&self) -> bool {
-        self.creep != Choice::Fixed(0) || self.lag != Choice::Fixed(0.0)
+        let has_lag = self.lag != Choice::Fixed(0.0) || self.dynamics == Dynamics::Lag;
+        self.creep != Choice::Fixed(0) || has_lag
     }
 
     /// Whether a ring is looked for.
@@ -303,7 +304,7 @@ impl FitOptions {
 
     /// Whether the recordings have to have time.
     pub(crate) fn needs_time(&self) -> bool {
-        self.asks_after() || matches!(self.dynamics, Dynamics::Ring | Dynamics::Lag)
+        self.asks_after() || self.dynamics == Dynamics::Ring
     }
 
     /// Default number of bootstrap replicates: enough for standard errors of two digits, fewer for

@@ -68,15 +68,21 @@ pub(super) fn mended<'a>(
                 (a.recording, a.sample) == (b.recording, b.sample) && moved <= SETTLED * span
             });
         outliers = found;
-        mended = Cow::Borrowed(recordings);
-        for outlier in &outliers {
-            mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
-        }
+        mended = moved(recordings, &outliers);
         if settled {
             break;
         }
     }
     Ok((mended, outliers))
+}
+
+/// The recordings with these outliers moved to where their neighbours say.
+pub(super) fn moved<'a>(recordings: &'a [Recording], outliers: &[Outlier]) -> Cow<'a, [Recording]> {
+    let mut moved = Cow::Borrowed(recordings);
+    for outlier in outliers {
+        moved.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
+    }
+    moved
 }
 
 /// A sample that is far from its neighbours, and how far.

@@ -35,6 +35,8 @@ impl Tried {
 mod tests {
     use super::*;
     use crate::identify::{Choice, Dynamics, Fit};
+    use crate::remedy::Setting;
+    use crate::verdict::Verdict;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -75,18 +77,29 @@ mod tests {
         }
     }
 
-    /// Noise of 2 % of the range leaves room for a body, and there is none.
+    /// What else moves the output leaves room for a body, and there is none.
     #[test]
     fn a_body_that_was_not_found_is_no_advice() {
         for seed in 0..2 {
-            let recording = play(seed, 0.0, 4.0);
+            let mut recording = play(seed, 0.0, 0.01);
+            for (n, y) in recording.output.iter_mut().enumerate() {
+                *y += 3.0 * (0.05 * n as f64).sin();
+            }
             let model = Fit::new().bootstrap(0).run(&recording).unwrap();
             let tried = Tried::by(&model, std::slice::from_ref(&recording));
             assert!(tried.thermal && !tried.body, "seed {seed}");
+            let next = Verdict::of_fit(&model, &recording).unwrap().next();
+            let next = next.spelt(Setting::typed);
+            assert!(
+                next.contains("--creep") && !next.contains("--thermal"),
+                "{next}"
+            );
             let unasked = Fit::new().bootstrap(0).dynamics(Dynamics::Off);
             let model = unasked.run(&recording).unwrap();
             let tried = Tried::by(&model, std::slice::from_ref(&recording));
             assert!(!tried.thermal, "seed {seed}");
+            let next = Verdict::of_fit(&model, &recording).unwrap().next();
+            assert!(next.spelt(Setting::typed).contains("--thermal"), "{next:?}");
         }
     }
 }

@@ -322,6 +322,10 @@ impl Verdict {
                      one alone",
                     [],
                 ),
+                PartKind::Late if self.has_time && self.tried.thermal => Remedy::new(
+                    "let the fit look for what comes late: {} or {}",
+                    [Setting::word("lag", "auto"), Setting::word("creep", "auto")],
+                ),
                 PartKind::Late if self.has_time => Remedy::new(
                     "let the fit look for what comes late: {}, {}, or {} for a drive that heats",
                     [

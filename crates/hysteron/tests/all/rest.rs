@@ -2,8 +2,8 @@
 
 use crate::common::shared;
 use hysteron::{
-    Columns, Fit, Model, Operator, Plane, Recording, Repair, Sign, Spacing, Start, evaluate_errors,
-    range,
+    Auto, Columns, Fit, FitOptions, Model, Operator, Plane, Progress, Recording, Repair, Sign,
+    Spacing, Start, evaluate_errors, left_out, range,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -174,8 +174,7 @@ fn with_a_load_there_is_no_rest() {
     );
 }
 
-/// A dead time, a ring, a lag and a body are looked for in a recording with time, whatever start is
-/// asked for.
+/// Dead time, ring, lag and body are looked for in a recording with time: no start is in their way.
 #[test]
 fn every_start_is_fitted_with_time_too() {
     let rng = &mut ChaCha8Rng::seed_from_u64(11);
@@ -193,6 +192,15 @@ fn every_start_is_fitted_with_time_too() {
                 let fit = found.unwrap().fit.unwrap();
                 assert_eq!(fit.start, start);
             }
+            // A start that is asked for, and then left to the data.
+            let open = Fit::new().bootstrap(0).start(start).start(Auto);
+            assert!(open.run(&timed).is_ok());
+            let options = FitOptions {
+                start,
+                ..FitOptions::plain()
+            };
+            let recordings = std::slice::from_ref(&recording);
+            assert!(left_out(recordings, &options, None, Progress::NONE).is_ok());
         }
     }
 }

@@ -3,11 +3,12 @@
 
 use crate::error::{Error, Result};
 use crate::identify::changed::{at, enough};
+use crate::identify::choose::start::at_rest;
 use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::{Choice, FitOptions, Spacing};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
-use crate::model::Smooth;
+use crate::model::{Smooth, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::fair_range;
@@ -41,6 +42,8 @@ pub struct LeftOut {
 /// The fits are those of the operators alone, because the stages around them are found from whole
 /// recordings. A load changes the weights, whatever the load law.
 ///
+/// A rest that is not given is found from all branches.
+///
 /// # Errors
 /// As [`crate::Fit::run`]; [`crate::Error::Fit`] if there is only one branch, and for options that
 /// ask for spacing or for stages behind the operators.
@@ -59,6 +62,11 @@ pub fn left_out(
                 .into(),
         ));
     }
+    let has_load = recordings.iter().any(|recording| recording.load.is_some());
+    let options = &match (options.start, options.rest) {
+        (Start::Rest, None) if !has_load => at_rest(recordings, options)?,
+        _ => options.clone(),
+    };
     let mut problem = Problem::new(recordings, options)?;
     let experiment = &problem.experiment;
     let count = experiment.branches.len().min(FOLDS);

@@ -18,6 +18,9 @@ const SEARCHED: usize = 2000;
 /// settled to 2 %. A slower body cannot be distinguished from drift.
 const SETTLED: f64 = 4.0;
 
+/// Levels at most of the plane on which a first look is taken.
+const LOOK: usize = 20;
+
 /// Ratio of neighbouring time constants on the first grid.
 const GRID: f64 = 2.0;
 
@@ -69,19 +72,21 @@ pub(super) fn find(
     Ok((body, told_apart))
 }
 
-/// Whether recordings look at all as if their input heats: with a common time constant in front of
-/// the operators, what is fitted is followed better by this share.
+/// Whether recordings look at all as if their input heats: with some common time constant in front
+/// of the operators of a coarse plane, the error on what is fitted is at most this part of that
+/// without a body.
 ///
 /// # Errors
 /// As [`find`].
 pub(in crate::identify) fn may_heat(
     recordings: &[Recording],
     options: &FitOptions,
-    share: f64,
+    most: f64,
     progress: Progress<'_>,
 ) -> Result<bool> {
     // From any start, which is not known here.
     let options = FitOptions {
+        levels: options.levels.min(LOOK),
         start: Start::Unknown,
         ..options.clone()
     };
@@ -89,7 +94,7 @@ pub(in crate::identify) fn may_heat(
     let thinned: Vec<Recording> = recordings.iter().map(|r| search.thinned(r)).collect();
     let cold = fit_weights(&thinned, &search.options, Progress::NONE)?;
     let (_, warm) = search.best_of_grid(|[tau]: &[f64; 1]| [*tau; 2])?;
-    Ok(cold.fit.is_some_and(|cold| warm < share * cold.rmse))
+    Ok(cold.fit.is_some_and(|cold| warm <= most * cold.rmse))
 }
 
 pub(super) struct Search<'a> {
@@ -174,6 +179,15 @@ impl<'a> Search<'a> {
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],
     ) -> Result<([f64; 2], f64)> {
         let (start, _) = self.best_of_grid(&logarithms)?;
+        self.best_near(start, logarithms)
+    }
+
+    /// The best time constants near a point of the grid, and their RMSE.
+    fn best_near<const N: usize>(
+        &self,
+        start: [f64; N],
+        logarithms: impl Fn(&[f64; N]) -> [f64; 2],
+    ) -> Result<([f64; 2], f64)> {
         let value = |point: &[f64; N]| self.rmse_inside(point, &logarithms);
         let (point, rmse) = minimise(start, 0.5 * GRID.ln(), TOLERANCE, STEPS, value)?;
         Ok((logarithms(&point).map(f64::exp), rmse))
@@ -219,7 +233,8 @@ impl<'a> Search<'a> {
                 true => [heating, *other],
                 false => [*other, cooling],
             };
-            if self.best_of_grid(line)?.1 <= most || self.best(line)?.1 <= most {
+            let (start, rmse) = self.best_of_grid(line)?;
+            if rmse <= most || self.best_near(start, line)?.1 <= most {
                 return Ok(false);
             }
         }

@@ -153,7 +153,8 @@ pub(super) fn find(
             false => least([heating], |[tau]| value([tau, tau, 0.0]))?.1,
         };
         without = without.min(alone);
-        if with >= (1.0 - WORTH) * without {
+        let is_worth = with < (1.0 - WORTH) * without;
+        if !is_worth {
             return Ok(None);
         }
     }
