@@ -35,7 +35,6 @@ impl Tried {
 mod tests {
     use super::*;
     use crate::identify::{Choice, Dynamics, Fit};
-    use crate::remedy::Setting;
     use crate::verdict::Verdict;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -89,9 +88,9 @@ mod tests {
             let tried = Tried::by(&model, std::slice::from_ref(&recording));
             assert!(tried.thermal && !tried.body, "seed {seed}");
             let next = Verdict::of_fit(&model, &recording).unwrap().next();
-            let next = next.spelt(Setting::typed);
+            let next = next.to_string();
             assert!(
-                next.contains("--creep") && !next.contains("--thermal"),
+                next.contains("`creep`") && !next.contains("`thermal`"),
                 "{next}"
             );
             let unasked = Fit::new().bootstrap(0).dynamics(Dynamics::Off);
@@ -99,7 +98,7 @@ mod tests {
             let tried = Tried::by(&model, std::slice::from_ref(&recording));
             assert!(!tried.thermal, "seed {seed}");
             let next = Verdict::of_fit(&model, &recording).unwrap().next();
-            assert!(next.spelt(Setting::typed).contains("--thermal"), "{next:?}");
+            assert!(next.to_string().contains("`thermal`"), "{next:?}");
         }
     }
 }
