@@ -166,21 +166,6 @@ fn cost(chosen: &Chosen) -> usize {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::model::{Smooth, Start};
-
-    fn with(levels: usize) -> Chosen {
-        Chosen {
-            levels,
-            smooth: Smooth::NONE,
-            start: Start::Off,
-            rest: None,
-            spacing: None,
-            delay: 0,
-            rings: false,
-            heated: false,
-        }
-    }
-
     /// The palette of pilots that choose these levels, with `error(pilot, levels)`.
     fn shared(
         own: &[usize],
@@ -189,7 +174,7 @@ mod tests {
         let mut palette = Palette::default();
         for (pilot, &levels) in own.iter().enumerate() {
             palette.add(error(pilot, levels));
-            palette.suggest(with(levels));
+            palette.suggest(Chosen::with_levels(levels));
         }
         let tested =
             |pilot: usize, chosen: &Chosen| Ok(Signs::of(error(pilot, chosen.levels), [0.0; 4]));

@@ -85,12 +85,11 @@ impl Fit<'_> {
             None => fit = fit.spacing(Spacing::Uniform),
             shape => fit.shape = shape,
         }
-        if fit.thermal.is_none() {
-            fit.thermal = Some(match chosen.heated {
-                true => Thermal::Auto,
-                false => Thermal::None,
-            });
-        }
+        let body = match chosen.heated {
+            true => Thermal::Auto,
+            false => Thermal::None,
+        };
+        fit.thermal.get_or_insert(body);
         // A body and a dead time change places, so the dead time is looked for again.
         if self.options.delay == Choice::Auto && !fit.is_heated() {
             fit = fit.delay(chosen.delay);
@@ -120,20 +119,31 @@ impl Fit<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_body_is_looked_for_as_the_pilots_found_it() {
-        let chosen = |heated| Chosen {
-            levels: 10,
+impl Chosen {
+    /// The choice of so many levels, and of nothing else.
+    pub(crate) fn with_levels(levels: usize) -> Self {
+        Self {
+            levels,
             smooth: Smooth::NONE,
             start: Start::Off,
             rest: None,
             spacing: None,
             delay: 0,
             rings: false,
+            heated: false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_is_looked_for_as_the_pilots_found_it() {
+        let chosen = |heated| Chosen {
             heated,
+            ..Chosen::with_levels(10)
         };
         for (heated, body) in [(true, Thermal::Auto), (false, Thermal::None)] {
             assert_eq!(Fit::new().sharing(&chosen(heated)).thermal, Some(body));

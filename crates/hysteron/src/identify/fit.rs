@@ -267,8 +267,8 @@ impl<'a> Fit<'a> {
         is_late || self.options.needs_time() || self.is_heated()
     }
 
-    /// Whether a dead time, a ring, a lag or a body that nobody asked for is looked for in recordings
-    /// with time and without a load.
+    /// Whether a dead time, a ring, a lag or a body that nobody asked for is looked for in
+    /// recordings with time and without a load.
     pub(crate) fn looks_for_dynamics(&self) -> bool {
         self.options.looks_for_ring() || self.options.delay == Choice::Auto
     }
@@ -282,12 +282,8 @@ impl<'a> Fit<'a> {
     fn looks_for_body(&self) -> bool {
         let is_open = self.options.dynamics == Dynamics::Auto && !self.options.asks_after();
         // A rest is found for a model without a body.
-        is_open && self.thermal.is_none() && self.prior.is_none() && !self.finds_rest()
-    }
-
-    /// Whether a start at rest is asked for, and where the rest was is left to the data.
-    fn finds_rest(&self) -> bool {
-        !self.auto_start && self.options.start == Start::Rest && self.options.rest.is_none()
+        let finds_rest = !self.auto_start && self.options.opens_rest();
+        is_open && self.thermal.is_none() && self.prior.is_none() && !finds_rest
     }
 
     /// The same fit, which looks for no dynamics that nobody asked for.
@@ -323,8 +319,8 @@ impl<'a> Fit<'a> {
     }
 
     /// Whether a thermal body in front of the operators is identified together with the weights:
-    /// `true` or `false`, or [`Auto`](crate::Auto) for a body that may bind heat ([`Thermal`]). With
-    /// `false`, none is looked for unasked either.
+    /// `true` or `false`, or [`Auto`](crate::Auto) for a body that may bind heat ([`Thermal`]).
+    /// With `false`, none is looked for unasked either.
     ///
     /// The recordings need time. Their input is a drive that heats (squared current, squared
     /// voltage, duty cycle). For given time constants, finding the weights is a convex problem. So
@@ -443,8 +439,7 @@ impl<'a> Fit<'a> {
         let at_once = self.acting(recordings)?;
         // Outliers would hide a dead time. A body and it change places, so what is behind the body
         // tells.
-        let outliers = at_once.fit.as_ref().map_or(&[][..], |fit| &fit.outliers);
-        let mended = outliers::moved(recordings, outliers);
+        let mended = outliers::mended_by(recordings, &at_once);
         let behind = match self.is_heated() {
             false => mended,
             true => {
@@ -453,8 +448,9 @@ impl<'a> Fit<'a> {
             }
         };
         let mut options = self.options.clone();
-        let fit = at_once.fit.as_ref();
-        if let (Start::Rest, None, Some(fit)) = (options.start, options.rest, fit) {
+        if options.opens_rest()
+            && let Some(fit) = &at_once.fit
+        {
             (options.start, options.rest) = (fit.start, fit.rest());
         }
         let delay = delay::find(&behind, &options, self.progress)?;
@@ -517,7 +513,7 @@ impl<'a> Fit<'a> {
             };
         }
         // Outliers are found first: one of them can move the rest across the range.
-        let open_rest = options.start == Start::Rest && options.rest.is_none() && plain;
+        let open_rest = options.opens_rest() && plain;
         if open_rest {
             options.start = Start::Unknown;
         }

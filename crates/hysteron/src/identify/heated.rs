@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::identify::delay;
 use crate::identify::options::{Choice, FitOptions};
-use crate::identify::outliers::moved;
+use crate::identify::outliers::mended_by;
 use crate::identify::stages::{may_heat, step_of, time_passes, with_right_input};
 use crate::model::{Delay, FitSummary, Model, Validation};
 use crate::progress::{Progress, ended_by_callback};
@@ -88,16 +88,16 @@ fn warm(
     run: Run<'_>,
     progress: Progress<'_>,
 ) -> Result<Option<(Model, Delay)>> {
-    // A look at a few time constants costs little beside a search for both, and for bound heat. What
-    // cannot be looked at is searched.
+    // A look at a few time constants costs little beside a search for both, and for bound heat.
+    // What cannot be looked at is searched.
     let late = match options.delay {
         Choice::Fixed(samples) => delay::fixed(samples, recordings)?,
         Choice::Auto => Delay::NONE,
     };
-    let outliers = cold.fit.as_ref().map_or(&[][..], |fit| &fit.outliers);
     let seen = late.of_recordings(recordings);
+    let seen = mended_by(&seen, cold);
     let looked = ended_by_callback(progress, |progress| {
-        Ok(may_heat(&moved(&seen, outliers), options, WORTH, progress))
+        Ok(may_heat(&seen, options, WORTH, progress))
     })?;
     if matches!(looked, Ok(false)) {
         return Ok(None);

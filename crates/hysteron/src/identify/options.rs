@@ -282,6 +282,11 @@ impl FitOptions {
         }
     }
 
+    /// Whether a start at rest is asked for, and where the rest was is left to the data.
+    pub(crate) fn opens_rest(&self) -> bool {
+        self.start == Start::Rest && self.rest.is_none()
+    }
+
     /// Whether creep or a lag after the operators is asked for.
     pub(crate) fn asks_after(&self) -> bool {
         let has_lag = self.lag != Choice::Fixed(0.0) || self.dynamics == Dynamics::Lag;

@@ -7,7 +7,7 @@ use crate::identify::neighbours::Neighbours;
 use crate::identify::options::{FitOptions, LoadLaw, SOME_SMOOTHNESS};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
-use crate::model::Outlier;
+use crate::model::{Model, Outlier};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::spikes::isolated;
@@ -76,8 +76,15 @@ pub(super) fn mended<'a>(
     Ok((mended, outliers))
 }
 
-/// The recordings with these outliers moved to where their neighbours say.
-pub(super) fn moved<'a>(recordings: &'a [Recording], outliers: &[Outlier]) -> Cow<'a, [Recording]> {
+/// The recordings with the outliers of a model's fit moved to where their neighbours say.
+pub(super) fn mended_by<'a>(recordings: &'a [Recording], model: &Model) -> Cow<'a, [Recording]> {
+    moved(
+        recordings,
+        model.fit.as_ref().map_or(&[], |fit| &fit.outliers),
+    )
+}
+
+fn moved<'a>(recordings: &'a [Recording], outliers: &[Outlier]) -> Cow<'a, [Recording]> {
     let mut moved = Cow::Borrowed(recordings);
     for outlier in outliers {
         moved.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;

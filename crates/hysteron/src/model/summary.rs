@@ -133,8 +133,8 @@ impl FitSummary {
         Some((self.rmse.powi(2) - noise.powi(2)).max(0.0).sqrt())
     }
 
-    /// Where the operators rested before the recording, in the unit of the input; `None` for another
-    /// start.
+    /// Where the operators rested before the recording, in the unit of the input; `None` for
+    /// another start.
     pub(crate) fn rest(&self) -> Option<[f64; 2]> {
         let rest = self.other.get("rest").filter(|_| self.start == Start::Rest);
         serde_json::from_value(rest?.clone()).ok()

@@ -7,8 +7,9 @@ use crate::recording::Recording;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Tried {
     pub(super) creep: bool,
+    /// Whether a body was asked for, or looked for unasked.
     pub(super) thermal: bool,
-    /// Whether it has a body.
+    /// Whether the model has one.
     pub(super) body: bool,
     pub(super) sensor_lag: bool,
 }

@@ -8,7 +8,7 @@ use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::{Choice, FitOptions, Spacing};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
-use crate::model::{Smooth, Start};
+use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::fair_range;
@@ -63,9 +63,9 @@ pub fn left_out(
         ));
     }
     let has_load = recordings.iter().any(|recording| recording.load.is_some());
-    let options = &match (options.start, options.rest) {
-        (Start::Rest, None) if !has_load => at_rest(recordings, options)?,
-        _ => options.clone(),
+    let options = &match options.opens_rest() && !has_load {
+        true => at_rest(recordings, options)?,
+        false => options.clone(),
     };
     let mut problem = Problem::new(recordings, options)?;
     let experiment = &problem.experiment;

@@ -5,6 +5,7 @@ use crate::identify::changed::thin;
 use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::nelder_mead::minimise;
+use crate::identify::stages::search::step_of;
 use crate::model::{FirstOrder, Start, needs_time};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -120,8 +121,7 @@ impl<'a> Search<'a> {
         for recording in recordings {
             recording.check()?;
             let (start, end) = range(recording.time.as_ref().ok_or_else(needs_time)?);
-            let step = (end - start) / recording.len().max(2).saturating_sub(1) as f64;
-            shortest = shortest.min(step);
+            shortest = shortest.min(step_of(recording));
             longest = longest.max(end - start);
         }
         if shortest <= 0.0 {
