@@ -46,7 +46,7 @@ pub(super) fn find(
             "a lag of {lag} s: it must be a finite number from 0 on"
         )));
     }
-    let search = Search::new(recordings, options, open, progress)?;
+    let mut search = Search::new(recordings, options, open, progress)?;
     let without = search.left_out(&After::default())?;
     let counts = match options.creep {
         Choice::Fixed(count) => vec![count],

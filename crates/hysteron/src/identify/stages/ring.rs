@@ -12,7 +12,9 @@ use crate::identify::options::{Dynamics, FitOptions};
 use crate::identify::stages::nelder_mead::minimise;
 use crate::identify::stages::resonator::{Clock, Resonator};
 use crate::identify::stages::search::{fine, is_better, noise_percent};
+use crate::identify::weights::again::Again;
 use crate::identify::weights::problem::Problem;
+use crate::identify::weights::solve::STEPS;
 use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -121,7 +123,7 @@ pub(super) fn find(
         return Ok(None);
     };
     let mut search = Search::new(recordings, &options, &clock, progress)?;
-    let still = search.sums(None)?;
+    let still = search.still(None)?;
     let (constants, targets, _) = search.swung(first, None, &still)?;
     let [frequency, damping] = constants;
     let decay = 1.0 / (std::f64::consts::TAU * frequency * damping);
@@ -157,7 +159,7 @@ fn judged(
         return Ok(None);
     };
     let mut search = Search::new(recordings, options, &clock, progress)?;
-    let still = search.sums(None)?;
+    let still = search.still(None)?;
     let Some(first) = search.first(&still, asked)? else {
         return Ok(None);
     };
@@ -206,7 +208,7 @@ fn explains(
 }
 
 struct Search<'a> {
-    problem: Problem<'a>,
+    fits: Again<'a>,
     measured: Vec<f64>,
     clock: &'a Clock,
     progress: Progress<'a>,
@@ -222,27 +224,21 @@ impl<'a> Search<'a> {
         progress.tell("ring", f64::NAN)?;
         Ok(Self {
             measured: recordings.iter().flat_map(|r| r.output.clone()).collect(),
-            problem: Problem::new(recordings, options)?,
+            fits: Again::new(Problem::new(recordings, options)?),
             clock,
             progress,
         })
     }
 
-    /// The outputs of the operators, fitted to the outputs of the problem at the samples kept.
-    fn sums(&mut self, kept: Option<&[f64]>) -> Result<Vec<f64>> {
+    /// The outputs of the operators, fitted to `targets` at the samples kept.
+    fn sums(&mut self, targets: Vec<f64>, kept: Option<&[f64]>) -> Result<Vec<f64>> {
         self.progress.tell("ring", f64::NAN)?;
-        let fitted = self.problem.solve(kept, Progress::NONE)?;
-        let (offset, sign) = (self.problem.options.offset, fitted.sign.factor());
-        let predicted = self.problem.predict(&fitted.solution)?;
-        let outputs = predicted.iter().map(|h| offset.unwrap_or(0.0) + sign * h);
-        Ok(outputs.collect())
+        self.fits.outputs(targets, kept, STEPS)
     }
 
     /// Those without a ring.
     fn still(&mut self, kept: Option<&[f64]>) -> Result<Vec<f64>> {
-        let measured = self.measured.clone();
-        *self.problem.experiment.output.to_mut() = measured;
-        self.sums(kept)
+        self.sums(self.measured.clone(), kept)
     }
 
     /// The squares that a ring behind these sums leaves at the samples kept.
@@ -314,8 +310,7 @@ impl<'a> Search<'a> {
             if round == ROUNDS {
                 return Ok((constants, targets, outputs));
             }
-            self.problem.experiment.output.to_mut().clone_from(&targets);
-            sums = self.sums(kept)?;
+            sums = self.sums(targets, kept)?;
             round += 1;
         }
     }

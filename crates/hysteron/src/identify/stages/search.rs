@@ -1,11 +1,13 @@
 //! Searches constants of creep and lag: those with the least error on what is fitted, and their
 //! error on blocks of time that are left out.
 
-use super::undone::{After, before, forward, no_time};
+use super::undone::{After, forward, no_time, undone_outputs};
 use crate::error::{Error, Result};
 use crate::identify::choose::Open;
 use crate::identify::options::{Choice, FitOptions};
+use crate::identify::weights::again::Again;
 use crate::identify::weights::problem::Problem;
+use crate::identify::weights::solve::STEPS;
 use crate::model::{CreepTerm, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -43,6 +45,10 @@ const SLIGHT: Smooth = Smooth {
     along: 1e-9,
     across: 1e-9,
 };
+
+/// Proximal steps of a fit that is compared with others of its kind: one ends where its ridge of
+/// 1e-11 no longer shows in an error.
+const SEARCHED: usize = 1;
 
 /// Rounds in which coefficients and time constants are refined, each with a smaller step.
 const REFINED: i32 = 4;
@@ -111,10 +117,11 @@ pub(super) fn noise_percent(recordings: &[Recording]) -> f64 {
 
 pub(super) struct Search<'a> {
     recordings: &'a [Recording],
+    measured: Vec<f64>,
     /// For what is left out.
-    coarse: FitOptions,
+    coarse: Again<'a>,
     /// For what is fitted.
-    fine: FitOptions,
+    fine: Again<'a>,
     progress: Progress<'a>,
     /// Into how many blocks of time a recording is divided.
     pub(super) blocks: usize,
@@ -160,11 +167,12 @@ impl<'a> Search<'a> {
             smooth: options.smooth.at_least(SMOOTH),
             ..options.clone()
         };
-        let fine = fine(options, open);
+        let fits = |options| Ok::<_, Error>(Again::new(Problem::new(recordings, options)?));
         Ok(Self {
             recordings,
-            coarse,
-            fine,
+            measured: recordings.iter().flat_map(|r| r.output.clone()).collect(),
+            coarse: fits(&coarse)?,
+            fine: fits(&fine(options, open))?,
             progress,
             blocks: BLOCKS,
             noise: noise_percent(recordings),
@@ -174,7 +182,7 @@ impl<'a> Search<'a> {
     }
 
     /// Constants whose error on what is fitted is known.
-    pub(super) fn judged(&self, (after, fitted): (After, f64)) -> Result<Candidate> {
+    pub(super) fn judged(&mut self, (after, fitted): (After, f64)) -> Result<Candidate> {
         Ok(Candidate {
             left_out: self.left_out(&after)?,
             fitted,
@@ -186,7 +194,7 @@ impl<'a> Search<'a> {
     /// to the data. A few numbers cannot follow noise, so they are those with the least error on
     /// what is fitted; whether they are taken is another question.
     pub(super) fn candidates(
-        &self,
+        &mut self,
         counts: &[usize],
         lag: Choice<f64>,
     ) -> Result<Vec<(After, f64)>> {
@@ -212,7 +220,7 @@ impl<'a> Search<'a> {
     }
 
     /// The lag that is best without creep; `None` in too short a recording.
-    pub(super) fn lag_alone(&self) -> Result<Option<(After, f64)>> {
+    pub(super) fn lag_alone(&mut self) -> Result<Option<(After, f64)>> {
         let lags = std::iter::successors(Some(SHORTEST * self.step), |lag| Some(2.0 * lag));
         let longest = SLOWEST * self.longest;
         let mut best: Option<(After, f64)> = None;
@@ -226,40 +234,37 @@ impl<'a> Search<'a> {
     }
 
     /// The best creep of `count` terms with this lag, and its error on what is fitted.
-    pub(super) fn creep(&self, count: usize, lag: f64) -> Result<(After, f64)> {
-        let rate = |terms: &[CreepTerm]| {
-            let after = After::after(terms, lag)?;
-            let error = self.fitted(&after)?;
-            Ok::<_, Error>((after, error))
-        };
+    pub(super) fn creep(&mut self, count: usize, lag: f64) -> Result<(After, f64)> {
         if count == 0 {
-            return rate(&[]);
+            return self.rated(After::after(&[], lag)?);
         }
-        let mut best = rate(&self.terms(count, COEFFICIENTS[0]))?;
-        for coefficient in COEFFICIENTS {
-            let mut consider = |terms: &[CreepTerm]| {
-                let next = rate(terms)?;
-                if next.1 < best.1 {
-                    best = next;
-                }
-                Ok::<_, Error>(())
-            };
-            match count {
-                // The time constant of a single term is searched too.
-                1 => {
-                    for term in self.terms(SINGLE, coefficient * SINGLE as f64) {
-                        consider(&[term])?;
-                    }
-                }
-                _ => consider(&self.terms(count, coefficient))?,
+        let tried = |coefficient: f64| match count {
+            // The time constant of a single term is searched too.
+            1 => {
+                let terms = self.terms(SINGLE, coefficient * SINGLE as f64);
+                terms.chunks(1).map(<[_]>::to_vec).collect()
+            }
+            _ => vec![self.terms(count, coefficient)],
+        };
+        let tried: Vec<_> = COEFFICIENTS.into_iter().flat_map(tried).collect();
+        let mut best = self.rated(After::after(&tried[0], lag)?)?;
+        for terms in &tried[1..] {
+            let next = self.rated(After::after(terms, lag)?)?;
+            if next.1 < best.1 {
+                best = next;
             }
         }
         self.refine_creep(&mut best)?;
         Ok(best)
     }
 
+    fn rated(&mut self, after: After) -> Result<(After, f64)> {
+        let error = self.fitted(&after)?;
+        Ok((after, error))
+    }
+
     /// Scales the coefficients of creep, and its time constants, as far as that helps.
-    fn refine_creep(&self, best: &mut (After, f64)) -> Result<()> {
+    fn refine_creep(&mut self, best: &mut (After, f64)) -> Result<()> {
         let scaled = |after: &After, coefficient: f64, tau: f64| {
             let scale = |term: CreepTerm| CreepTerm {
                 coefficient: term.coefficient * coefficient,
@@ -272,7 +277,7 @@ impl<'a> Search<'a> {
         self.refine(best, |after, factor| scaled(after, 1.0, factor))
     }
 
-    pub(super) fn refine_lag(&self, best: &mut (After, f64)) -> Result<()> {
+    pub(super) fn refine_lag(&mut self, best: &mut (After, f64)) -> Result<()> {
         self.refine(best, |after, factor| {
             After::after(&after.terms(), factor * after.lag())
         })
@@ -281,7 +286,7 @@ impl<'a> Search<'a> {
     /// Changes a stage by factors that come nearer to one, as long as the error on what is fitted
     /// falls.
     fn refine(
-        &self,
+        &mut self,
         best: &mut (After, f64),
         changed: impl Fn(&After, f64) -> Result<After>,
     ) -> Result<()> {
@@ -312,49 +317,46 @@ impl<'a> Search<'a> {
     }
 
     /// The error on blocks of time left out, in percent of the range.
-    pub(super) fn left_out(&self, after: &After) -> Result<f64> {
-        self.error(after, &self.coarse, &[Some(0), Some(1)])
+    pub(super) fn left_out(&mut self, after: &After) -> Result<f64> {
+        self.progress.tell("creep and lag", f64::NAN)?;
+        // There is memory for one Gram matrix only.
+        self.fine.forget();
+        let seen = undone_outputs(after, self.recordings)?;
+        let blocks: Vec<usize> = self
+            .recordings
+            .iter()
+            .flat_map(|r| (0..r.len()).map(|n| n * self.blocks / r.len() % 2))
+            .collect();
+        let mut squares = 0.0;
+        for part in [0, 1] {
+            let counts = |left: &usize| f64::from(*left != part);
+            let kept: Vec<f64> = blocks.iter().map(counts).collect();
+            let outputs = self.coarse.outputs(seen.clone(), Some(&kept), STEPS)?;
+            let outputs = forward(after, self.recordings, &outputs)?;
+            squares += self.squares(&outputs, |n| blocks[n] == part);
+        }
+        self.coarse.forget();
+        Ok(self.percent(squares))
     }
 
     /// The error on what is fitted, in percent of the range.
-    fn fitted(&self, after: &After) -> Result<f64> {
-        self.error(after, &self.fine, &[None])
+    fn fitted(&mut self, after: &After) -> Result<f64> {
+        self.progress.tell("creep and lag", f64::NAN)?;
+        let seen = undone_outputs(after, self.recordings)?;
+        let outputs = self.fine.outputs(seen, None, SEARCHED)?;
+        let outputs = forward(after, self.recordings, &outputs)?;
+        Ok(self.percent(self.squares(&outputs, |_| true)))
     }
 
-    /// The error with each of these parts left out in turn: every second block of time, or nothing.
-    /// What is left out is what counts; of nothing, all.
-    fn error(&self, after: &After, options: &FitOptions, parts: &[Option<usize>]) -> Result<f64> {
-        self.progress.tell("creep and lag", f64::NAN)?;
-        let seen = before(after, self.recordings)?;
-        let mut problem = Problem::new(&seen, options)?;
-        let block = |recording: &Recording, n: usize| n * self.blocks / recording.len();
-        let blocks: Vec<usize> = seen
-            .iter()
-            .flat_map(|recording| (0..recording.len()).map(|n| block(recording, n) % 2))
-            .collect();
-        let measured: Vec<f64> = self
-            .recordings
-            .iter()
-            .flat_map(|recording| recording.output.clone())
-            .collect();
-        let mut squares = 0.0;
-        for part in parts {
-            let kept: Vec<f64> = blocks
-                .iter()
-                .map(|b| f64::from(Some(*b) != *part))
-                .collect();
-            let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-            let sums = problem.outputs(&fitted)?;
-            let outputs = forward(after, self.recordings, &sums)?;
-            squares += outputs
-                .iter()
-                .zip(&measured)
-                .zip(&blocks)
-                .filter(|(_, block)| part.is_none_or(|part| **block == part))
-                .map(|((h, y), _)| (h - y).powi(2))
-                .sum::<f64>();
-        }
-        let (low, high) = fair_range(&measured);
-        Ok(100.0 * (squares / measured.len() as f64).sqrt() / (high - low))
+    /// The squares of the errors at the samples that count.
+    fn squares(&self, outputs: &[f64], counts: impl Fn(usize) -> bool) -> f64 {
+        let errors = outputs.iter().zip(&self.measured).enumerate();
+        let counted = errors.filter(|(n, _)| counts(*n));
+        counted.map(|(_, (h, y))| (h - y).powi(2)).sum()
+    }
+
+    fn percent(&self, squares: f64) -> f64 {
+        let (low, high) = fair_range(&self.measured);
+        100.0 * (squares / self.measured.len() as f64).sqrt() / (high - low)
     }
 }

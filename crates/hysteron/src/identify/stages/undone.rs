@@ -9,14 +9,22 @@ pub(super) type After = StageConstants<f64>;
 
 /// The recordings with the output as it was before creep and lag.
 pub(super) fn before(after: &After, recordings: &[Recording]) -> Result<Vec<Recording>> {
+    let mut outputs = undone_outputs(after, recordings)?.into_iter();
+    let mut before = recordings.to_vec();
+    for output in before
+        .iter_mut()
+        .flat_map(|recording| &mut recording.output)
+    {
+        *output = outputs.next().unwrap_or(*output);
+    }
+    Ok(before)
+}
+
+/// The outputs of all recordings as they were before creep and lag.
+pub(super) fn undone_outputs(after: &After, recordings: &[Recording]) -> Result<Vec<f64>> {
     let around = around(after, recordings)?;
-    let undone = |recording: &Recording| {
-        Ok(Recording {
-            output: around.before_stages(recording)?,
-            ..recording.clone()
-        })
-    };
-    recordings.iter().map(undone).collect()
+    let undone = recordings.iter().map(|r| around.before_stages(r));
+    Ok(undone.collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// A model of any operators with creep and lag.

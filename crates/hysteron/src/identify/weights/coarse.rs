@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::regressor::Regressor;
-use crate::identify::weights::solve::NormalEquations;
+use crate::identify::weights::solve::{NormalEquations, STEPS};
 use crate::model::{Sign, Solver};
 use crate::progress::Progress;
 use hysteron_core::{Plane, operator_count, operator_index, operators};
@@ -37,7 +37,7 @@ impl Problem<'_> {
         let equations =
             NormalEquations::new(&regressor, &self.experiment, free, kept, prior, progress)?;
         let start = self.coarse(half, free, kept, progress)?;
-        let Fitted { solution, sign } = self.best_sign(&equations, start, progress)?;
+        let Fitted { solution, sign } = self.best_sign(&equations, start, STEPS, progress)?;
         Ok(Some((sign, refined(&solution.x, half, levels))))
     }
 }
@@ -60,7 +60,6 @@ mod tests {
 
     use super::*;
     use crate::identify::options::FitOptions;
-    use crate::identify::weights::solve::STEPS;
     use crate::model::{Smooth, Start};
     use crate::recording::Recording;
 

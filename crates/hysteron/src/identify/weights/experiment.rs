@@ -27,6 +27,8 @@ pub(crate) struct Experiment<'a> {
     /// The same for the offset, whose order is at least 1. Where gain and offset over the load are
     /// known, that offset is taken off the outputs, and a constant is left.
     pub(crate) offsets: Vec<OfLoad>,
+    /// What was taken off; empty where nothing was.
+    known: Vec<f64>,
 }
 
 impl<'a> Experiment<'a> {
@@ -48,6 +50,7 @@ impl<'a> Experiment<'a> {
             load_range: None,
             parts: Vec::new(),
             offsets: Vec::new(),
+            known: Vec::new(),
         };
         let mut load = first.load.as_ref().map(|_| Vec::new());
         let mut start = 0;
@@ -97,8 +100,9 @@ impl<'a> Experiment<'a> {
                     let gains = at.iter().map(|at| at.gain).collect();
                     experiment.parts = vec![OfLoad::Each(gains)];
                     experiment.offsets = vec![OfLoad::One(load.len())];
-                    let outputs = experiment.output.to_mut().iter_mut().zip(&at);
-                    outputs.for_each(|(y, at)| *y -= at.offset);
+                    experiment.known = at.iter().map(|at| at.offset).collect();
+                    let outputs = experiment.output.to_mut().iter_mut();
+                    outputs.zip(&experiment.known).for_each(|(y, at)| *y -= at);
                     return Ok(experiment);
                 }
                 let share = |load: &f64| (load - low) / (high - low);
@@ -108,6 +112,24 @@ impl<'a> Experiment<'a> {
             }
         }
         Ok(experiment)
+    }
+
+    /// Other outputs of the same recordings.
+    pub(crate) fn replace_outputs(&mut self, mut outputs: Vec<f64>) {
+        outputs
+            .iter_mut()
+            .zip(&self.known)
+            .for_each(|(y, at)| *y -= at);
+        self.output = Cow::Owned(outputs);
+    }
+
+    /// Outputs of a model as they are measured: with what was taken off.
+    pub(crate) fn as_measured(&self, mut outputs: Vec<f64>) -> Vec<f64> {
+        outputs
+            .iter_mut()
+            .zip(&self.known)
+            .for_each(|(y, at)| *y += at);
+        outputs
     }
 
     /// A branch ends where the input turns by more than the noise.

@@ -7,8 +7,9 @@
 //! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal equations
 //! with `nnls`, `pivoting` and `cholesky`. With many levels the Gram matrix is kept sparse, over
 //! Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`; `coarse` says where
-//! their search begins.
+//! their search begins; `again` fits the same inputs to other outputs.
 
+pub(super) mod again;
 pub(super) mod cholesky;
 mod coarse;
 pub(super) mod column;

@@ -5,12 +5,13 @@ use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::regressor::Regressor;
-use crate::identify::weights::solve::{NormalEquations, STEPS, Solution};
+use crate::identify::weights::solve::{NormalEquations, Penalised, STEPS, Solution};
 use crate::model::{LoadPart, Sign};
 use crate::model::{Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
+use std::sync::Arc;
 
 /// Largest size of the Gram matrix, in bytes.
 const GRAM_BYTES: u128 = 4 << 30;
@@ -146,10 +147,19 @@ impl<'a> Problem<'a> {
 
     /// The best weights over the samples kept (all if `None`).
     pub(crate) fn solve(&mut self, kept: Option<&[f64]>, progress: Progress<'_>) -> Result<Fitted> {
+        Ok(self.solve_keeping(kept, progress)?.0)
+    }
+
+    /// As [`Problem::solve`], with the matrix that was solved.
+    pub(super) fn solve_keeping(
+        &mut self,
+        kept: Option<&[f64]>,
+        progress: Progress<'_>,
+    ) -> Result<(Fitted, Arc<Penalised>)> {
         let free = self.free(kept)?;
         loop {
             check_gram(self.regressor.columns().len())?;
-            let (fitted, slopes) = {
+            let (fitted, slopes, penalised) = {
                 let levels = self.regressor.plane().levels();
                 let start = self.coarse(levels, &free, kept, progress)?;
                 let equations = NormalEquations::new(
@@ -160,9 +170,9 @@ impl<'a> Problem<'a> {
                     self.options.prior(),
                     progress,
                 )?;
-                let fitted = self.best_sign(&equations, start, progress)?;
+                let fitted = self.best_sign(&equations, start, STEPS, progress)?;
                 let slopes = equations.slopes(&fitted.solution.x);
-                (fitted, slopes)
+                (fitted, slopes, equations.penalised)
             };
             // Rounding of a gradient: the solver takes smaller values for zero.
             let residual = &fitted.solution.residual;
@@ -172,7 +182,7 @@ impl<'a> Problem<'a> {
                     .regressor
                     .take_missing(&self.experiment, residual, &slopes, rounding)?
             {
-                return Ok(fitted);
+                return Ok((fitted, penalised));
             }
         }
     }
@@ -198,11 +208,13 @@ impl<'a> Problem<'a> {
         Ok(near.map(|(sign, x, _)| (sign, Some(x))).collect())
     }
 
-    /// The best weights, of the better sign. A `start` has a sign and weights to begin with.
+    /// The best weights, of the better sign, after at most so many proximal steps. A `start` has a
+    /// sign and weights to begin with.
     pub(super) fn best_sign(
         &self,
         equations: &NormalEquations<'_>,
         start: Option<(Sign, Vec<f64>)>,
+        steps: usize,
         progress: Progress<'_>,
     ) -> Result<Fitted> {
         let signs = match (self.options.sign, start) {
@@ -218,7 +230,7 @@ impl<'a> Problem<'a> {
                 self.targets(sign),
                 self.options.solver,
                 start.as_deref(),
-                STEPS,
+                steps,
                 progress,
             )?;
             if best

@@ -21,6 +21,7 @@ use crate::progress::Progress;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Ridge relative to the mean diagonal element of the Gram matrix. It is small compared with the
 /// singular values that matter, and large compared with the rounding.
@@ -282,11 +283,11 @@ impl Penalised {
 
 /// `Aᵀ A` of the samples kept, with the free columns eliminated, plus the prior.
 pub(crate) struct NormalEquations<'a> {
-    regressor: &'a Regressor,
-    experiment: &'a Experiment<'a>,
-    free: &'a FreeColumns,
-    kept: Option<&'a [f64]>,
-    pub(crate) penalised: Penalised,
+    pub(super) regressor: &'a Regressor,
+    pub(super) experiment: &'a Experiment<'a>,
+    pub(super) free: &'a FreeColumns,
+    pub(super) kept: Option<&'a [f64]>,
+    pub(crate) penalised: Arc<Penalised>,
 }
 
 impl<'a> NormalEquations<'a> {
@@ -321,7 +322,7 @@ impl<'a> NormalEquations<'a> {
             experiment,
             free,
             kept,
-            penalised: Penalised::new(gram, mixed, samples, prior, regressor),
+            penalised: Arc::new(Penalised::new(gram, mixed, samples, prior, regressor)),
         })
     }
 

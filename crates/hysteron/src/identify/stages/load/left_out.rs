@@ -1,6 +1,6 @@
 //! Predicts loads that were left out, by each law.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::load::curves::{fine, moving_only, still, without};
 use crate::identify::stages::load::search::Search;
@@ -76,11 +76,10 @@ impl Search<'_> {
                 (others, registration.unwrap_or_default(), 0)
             }
         };
-        let load_curves = (!others.gains.is_empty()).then(|| others.clone());
         let seen = self.seen(&others, &registration, self.recordings)?;
         let options = FitOptions {
             load_degree: Some(degree),
-            load_curves: load_curves.clone(),
+            load_curves: (!others.gains.is_empty()).then(|| others.clone()),
             ..self.options.clone()
         };
         let mut problem = Problem::new(&seen, &options)?;
@@ -89,14 +88,7 @@ impl Search<'_> {
             .map(|at| f64::from(Some(*at) != left))
             .collect();
         let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-        let sums = problem.predict(&fitted.solution)?;
-        let offset = |n: usize| match &load_curves {
-            Some(curves) => Ok::<_, Error>(curves.at(self.samples.load[n])?.offset),
-            None => Ok(0.0),
-        };
-        let sums = sums.into_iter().enumerate();
-        sums.map(|(n, sum)| Ok(offset(n)? + fitted.sign.factor() * sum))
-            .collect()
+        Ok(problem.experiment.as_measured(problem.outputs(&fitted)?))
     }
 
     /// The mean square error at one load, in squares of the range of its output.
