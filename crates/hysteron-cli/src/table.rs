@@ -24,7 +24,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         what,
         |table, out, progress| {
             let what = hysteron::Simulate {
-                input: &args.input,
+                input: args.input.as_deref().unwrap_or(&model.input.name),
                 around: Around {
                     time: args.time.as_deref(),
                     load: load.as_deref(),
@@ -51,7 +51,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         return Err("--look-ahead needs --policy anticipate: `hold` looks at no later row".into());
     }
     let how = Invert {
-        target: &args.target,
+        target: args.target.as_deref().unwrap_or(&model.output.name),
         policy,
         tolerance: args.tolerance.unwrap_or(tolerance),
         look_ahead: args.look_ahead.unwrap_or(LOOK_AHEAD),

@@ -149,9 +149,9 @@ pub(crate) struct Simulate {
     pub(crate) model: PathBuf,
     /// A table with the input
     pub(crate) data: PathBuf,
-    /// Column of the input
+    /// Column of the input [default: the model's, by its name]
     #[arg(long, value_name = "COL")]
-    pub(crate) input: String,
+    pub(crate) input: Option<String>,
     #[command(flatten)]
     pub(crate) load: Load,
     /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted
@@ -183,9 +183,9 @@ pub(crate) struct Invert {
     pub(crate) model: PathBuf,
     /// A table with the wanted output
     pub(crate) data: PathBuf,
-    /// Column of the wanted output
+    /// Column of the wanted output [default: the model's output, by its name]
     #[arg(long, value_name = "COL")]
-    pub(crate) target: String,
+    pub(crate) target: Option<String>,
     /// What the input does while the target stands still
     #[arg(long, value_enum, default_value = "hold")]
     pub(crate) policy: Policy,

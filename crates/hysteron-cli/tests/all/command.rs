@@ -201,6 +201,22 @@ fn invert_says_where_the_output_may_really_be_or_that_nobody_knows() {
 }
 
 #[test]
+fn columns_that_are_not_named_are_those_of_the_model() {
+    let bench = Bench::fitted();
+    for (short, long) in [
+        ("simulate model.json run.csv", "--input x"),
+        ("invert model.json run.csv", "--target y"),
+    ] {
+        let named = bench.run(&format!("{short} {long}"));
+        assert_eq!(bench.run(short).out, named.out, "{short}");
+        assert_eq!(named.out.lines().count(), 401);
+    }
+    bench.file("other.csv", "a,b\n1,2\n2,3\n");
+    let said = bench.refused("simulate model.json other.csv");
+    assert!(said.contains("no column `x`: there are `a`, `b`"), "{said}");
+}
+
+#[test]
 fn tables_go_to_standard_output_and_json_stands_alone() {
     let bench = Bench::fitted();
     let done = bench.run("simulate model.json run.csv --input x");

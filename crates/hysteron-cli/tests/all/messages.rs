@@ -51,10 +51,7 @@ fn wrong_words_are_told_what_was_meant() {
         ("export model.json", "hysteron export c | arduino | fmu"),
         ("export fmi model.json", "'fmu'"),
         ("fit run.csv", "-o <MODEL>"),
-        (
-            "simulate model.json run.csv -o t.csv",
-            "hysteron inspect FILE",
-        ),
+        ("prepare run.csv -o t.csv", "hysteron inspect FILE"),
         ("invert model.json run.csv --input x", "--target"),
         (
             "fit run.csv --input x --output y --bootstrap -1 -o n.json",
