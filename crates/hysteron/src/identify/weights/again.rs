@@ -31,8 +31,8 @@ impl<'a> Again<'a> {
     }
 
     /// The best weights over the samples kept, for the outputs that the problem has now. The sign
-    /// is that of the first fit of these samples. `steps` limits the proximal steps of those after
-    /// it.
+    /// is that of the first fit of these samples, and so are the columns that an unknown start adds.
+    /// `steps` limits the proximal steps of those after it.
     pub(crate) fn fit(
         &mut self,
         kept: Option<&[f64]>,
