@@ -166,6 +166,7 @@ fn cost(chosen: &Chosen) -> usize {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
     /// The palette of pilots that choose these levels, with `error(pilot, levels)`.
     fn shared(
         own: &[usize],

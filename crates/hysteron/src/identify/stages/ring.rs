@@ -12,6 +12,7 @@ use crate::identify::options::{Dynamics, FitOptions};
 use crate::identify::stages::nelder_mead::minimise;
 use crate::identify::stages::resonator::{Clock, Resonator};
 use crate::identify::stages::search::{fine, is_better, noise_percent};
+use crate::identify::stages::undone::with_outputs;
 use crate::identify::weights::again::Again;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::solve::STEPS;
@@ -135,14 +136,9 @@ pub(super) fn find(
     if !asked && is_unclear {
         return Ok(None);
     }
-    let mut recordings = recordings.to_vec();
-    let mut targets = targets.into_iter();
-    for output in recordings.iter_mut().flat_map(|r| &mut r.output) {
-        *output = targets.next().unwrap_or(*output);
-    }
     Ok(Some(Swinging {
         constants,
-        recordings,
+        recordings: with_outputs(recordings, &targets),
         report,
     }))
 }

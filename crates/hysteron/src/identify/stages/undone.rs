@@ -9,15 +9,21 @@ pub(super) type After = StageConstants<f64>;
 
 /// The recordings with the output as it was before creep and lag.
 pub(super) fn before(after: &After, recordings: &[Recording]) -> Result<Vec<Recording>> {
-    let mut outputs = undone_outputs(after, recordings)?.into_iter();
-    let mut before = recordings.to_vec();
-    for output in before
-        .iter_mut()
-        .flat_map(|recording| &mut recording.output)
-    {
-        *output = outputs.next().unwrap_or(*output);
+    Ok(with_outputs(
+        recordings,
+        &undone_outputs(after, recordings)?,
+    ))
+}
+
+/// The recordings with other outputs, which stand one recording after the other.
+pub(super) fn with_outputs(recordings: &[Recording], mut outputs: &[f64]) -> Vec<Recording> {
+    let mut others = recordings.to_vec();
+    for recording in &mut others {
+        let (own, rest) = outputs.split_at(recording.len());
+        recording.output.copy_from_slice(own);
+        outputs = rest;
     }
-    Ok(before)
+    others
 }
 
 /// The outputs of all recordings as they were before creep and lag.

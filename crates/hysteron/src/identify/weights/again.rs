@@ -30,9 +30,9 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// The best weights over the samples kept, for the outputs that the problem has now. The sign
-    /// is that of the first fit of these samples, and so are the columns that an unknown start adds.
-    /// `steps` limits the proximal steps of those after it.
+    /// The best weights over the samples kept, for the outputs that the problem has now. The first
+    /// fit of these samples decides the sign, and the columns that an unknown start adds; `steps`
+    /// limits the proximal steps of the fits after it.
     pub(crate) fn fit(
         &mut self,
         kept: Option<&[f64]>,
@@ -75,8 +75,7 @@ impl<'a> Again<'a> {
     ) -> Result<Vec<f64>> {
         self.problem.experiment.replace_outputs(targets);
         let fitted = self.fit(kept, steps, Progress::NONE)?;
-        let outputs = self.problem.outputs(&fitted)?;
-        Ok(self.problem.experiment.as_measured(outputs))
+        self.problem.measured_outputs(&fitted)
     }
 
     /// Gives the memory of the Gram matrix back.

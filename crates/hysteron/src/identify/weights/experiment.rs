@@ -101,8 +101,8 @@ impl<'a> Experiment<'a> {
                     experiment.parts = vec![OfLoad::Each(gains)];
                     experiment.offsets = vec![OfLoad::One(load.len())];
                     experiment.known = at.iter().map(|at| at.offset).collect();
-                    let outputs = experiment.output.to_mut().iter_mut();
-                    outputs.zip(&experiment.known).for_each(|(y, at)| *y -= at);
+                    let measured = std::mem::take(&mut experiment.output).into_owned();
+                    experiment.replace_outputs(measured);
                     return Ok(experiment);
                 }
                 let share = |load: &f64| (load - low) / (high - low);
@@ -114,7 +114,7 @@ impl<'a> Experiment<'a> {
         Ok(experiment)
     }
 
-    /// Other outputs of the same recordings.
+    /// Other outputs of the same recordings, as measured.
     pub(crate) fn replace_outputs(&mut self, mut outputs: Vec<f64>) {
         outputs
             .iter_mut()
@@ -124,7 +124,7 @@ impl<'a> Experiment<'a> {
     }
 
     /// Outputs of a model as they are measured: with what was taken off.
-    pub(crate) fn as_measured(&self, mut outputs: Vec<f64>) -> Vec<f64> {
+    pub(super) fn as_measured(&self, mut outputs: Vec<f64>) -> Vec<f64> {
         outputs
             .iter_mut()
             .zip(&self.known)

@@ -56,8 +56,8 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The right-hand side of the fit at a sample: the output minus a known offset, with the sign turned so
-    /// that non-negative weights fit it.
+    /// The right-hand side of the fit at a sample: the output minus a known offset, with the sign
+    /// turned so that non-negative weights fit it.
     pub(crate) fn target(&self, sign: Sign, sample: usize) -> f64 {
         self.turned(sign)(&self.experiment.output[sample])
     }
@@ -104,6 +104,11 @@ impl<'a> Problem<'a> {
     /// A known offset is among them.
     pub(crate) fn outputs(&self, fitted: &Fitted) -> Result<Vec<f64>> {
         self.outputs_over(&self.experiment, fitted)
+    }
+
+    /// As [`Problem::outputs`], as they are measured: with what known curves over the load add.
+    pub(crate) fn measured_outputs(&self, fitted: &Fitted) -> Result<Vec<f64>> {
+        Ok(self.experiment.as_measured(self.outputs(fitted)?))
     }
 
     /// As [`Problem::outputs`], over the same recordings with more samples.

@@ -88,7 +88,7 @@ impl Search<'_> {
             .map(|at| f64::from(Some(*at) != left))
             .collect();
         let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-        Ok(problem.experiment.as_measured(problem.outputs(&fitted)?))
+        problem.measured_outputs(&fitted)
     }
 
     /// The mean square error at one load, in squares of the range of its output.
