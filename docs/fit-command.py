@@ -131,7 +131,7 @@ def growth(program, folder, most):
          ["--smooth", "1e-8", "--spacing", "uniform", "--bootstrap", "0"]),
     ]
     for levels, samples in [(20, 10**4), (20, 10**5), (20, 10**6), (20, 10**7), (40, 10**5),
-                            (100, 10**4), (100, 10**5), (200, 10**5)]:
+                            (100, 10**4), (100, 10**5), (200, 10**5), (400, 10**5)]:
         if samples > most:
             continue
         data = recording(program, folder, levels, samples)

@@ -11,7 +11,8 @@ use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing, T
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked, SpacingShape};
-use crate::identify::weights::problem::{check_gram, check_options};
+use crate::identify::weights::problem::check_options;
+use crate::identify::weights::room::check_columns;
 use crate::model::{Delay, Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -369,7 +370,7 @@ impl<'a> Fit<'a> {
     /// too much memory.
     pub fn check(&self) -> Result<()> {
         let plane = Plane::new(0.0, 1.0, self.options.levels)?;
-        check_gram(plane.operators())?;
+        check_columns(plane.operators())?;
         check_options(&self.options)
     }
 

@@ -1,6 +1,6 @@
 //! Identification of known models, and the optimality of what is found.
 
-use hysteron::{Error, Fit, FitOptions, Model, Operator, Plane, Recording, Sign, Solver};
+use hysteron::{Error, Fit, FitOptions, Model, Operator, Plane, Recording, Sign, Smooth, Solver};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -177,6 +177,33 @@ fn what_cannot_be_fitted_is_refused() {
         ..FitOptions::plain()
     });
     assert!(matches!(error, Error::Fit(_)), "{error}");
+}
+
+/// The Gram matrix of so many levels has no room with all its elements, and a sparse one has.
+#[test]
+fn levels_whose_dense_matrix_has_no_room_are_fitted() {
+    let input: Vec<f64> = (0..3000)
+        .map(|n| 50.0 - 30.0 * (1.0 - f64::from(n) / 4000.0) * (f64::from(n) * 0.02).cos())
+        .collect();
+    let (mut y, noise) = (20.0, 0.1);
+    let output = input.iter().zip(0_u32..).map(|(x, n)| {
+        y = f64::clamp(y, x - 6.0, x + 3.0);
+        y + noise * f64::from(n * n).sin()
+    });
+    let recording = Recording::new(input.clone(), output.collect()).unwrap();
+    let with = |bootstrap| FitOptions {
+        levels: 220,
+        smooth: Smooth::from(1e-8),
+        bootstrap,
+        ..FitOptions::plain()
+    };
+    let model = Fit::from(&with(0)).run(&recording).unwrap();
+    // A play turns between two levels, so it is followed to half their distance.
+    let (half, rmse) = (0.5 * model.plane().step(), model.fit.unwrap().rmse);
+    assert!(rmse < half + noise, "{rmse} for {half}");
+    // What still asks for all elements says so.
+    let error = Fit::from(&with(10)).run(&recording).unwrap_err();
+    assert!(error.to_string().contains("take fewer levels"), "{error}");
 }
 
 /// A long rest leaves a large mean and little around it, which is where centring loses its digits.

@@ -14,9 +14,14 @@ use crate::progress::Progress;
 /// density.
 const SMALLEST_RIDGE: f64 = 1e-9;
 
+/// With more columns, the problem of the other folds is made where it is solved, so that few of
+/// them take memory at a time.
+const LARGE: usize = 2000;
+
 /// The samples of one number of levels, as sums over the folds.
 pub(super) struct Level<'a> {
     problem: Problem<'a>,
+    all: Sums,
     folds: Vec<Fold>,
     whole: Reduced,
     progress: Progress<'a>,
@@ -25,8 +30,8 @@ pub(super) struct Level<'a> {
 struct Fold {
     /// The sums over the fold.
     own: Sums,
-    /// The problem of all other folds.
-    rest: Reduced,
+    /// The problem of all other folds, where it is held.
+    rest: Option<Reduced>,
 }
 
 /// Solutions of the folds, from which a search at a similar candidate starts; the last is the
@@ -47,13 +52,16 @@ impl<'a> Level<'a> {
             Sums::of_groups(&problem, target, |n| folds.fold(n), folds.count, unnamed)?
         };
         let all = Sums::total(&own).ok_or_else(not_definite)?;
+        let is_held = problem.regressor.columns().len() <= LARGE;
         let folds = own.into_iter().map(|own| {
-            let rest = all.without(&own).reduced()?;
+            let rest = is_held.then(|| all.without(&own).reduced());
+            let rest = rest.transpose()?;
             Ok(Fold { own, rest })
         });
         Ok(Self {
             folds: folds.collect::<Result<_>>()?,
-            whole: all.reduced()?,
+            whole: all.clone().reduced()?,
+            all,
             problem,
             progress,
         })
@@ -89,9 +97,15 @@ impl<'a> Level<'a> {
         let solved = parallel::map(self.folds.len(), |n| {
             self.progress.tell("choice of levels", f64::NAN)?;
             let Fold { own, rest } = &self.folds[n];
-            let penalised = rest.penalised(self.prior(smooth), &self.problem);
             let start = near.as_ref().unwrap_or(&before[n]);
-            let at = rest.solve(&penalised, solver, start, Progress::NONE)?;
+            let solved = |rest: &Reduced| {
+                let penalised = rest.penalised(self.prior(smooth), &self.problem);
+                rest.solve(&penalised, solver, start, Progress::NONE)
+            };
+            let at = match rest {
+                Some(rest) => solved(rest)?,
+                None => solved(&self.all.without(own).reduced()?)?,
+            };
             Ok((own.error(&at), at.x))
         })?;
         let mut squares = 0.0;

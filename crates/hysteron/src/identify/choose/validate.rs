@@ -37,8 +37,8 @@ const FEWEST: usize = 28;
 /// unknown start up to twice as many.
 const MOST_COLUMNS: usize = 900;
 
-/// With more columns than [`MOST_COLUMNS`], the smoothness is searched for with so many levels first.
-/// The strengths do not depend on the number of levels, so the best is not far from there.
+/// With more columns than [`MOST_COLUMNS`], the smoothness is searched for with so many levels. The
+/// strengths do not depend on the number of levels, so the best is not far from there.
 const COARSE: usize = 40;
 
 /// From so many levels on a candidate takes long. The smoothness that was best with fewer levels
@@ -87,8 +87,8 @@ impl Candidates {
 /// levels. If the starts of several recordings are unknown, only two patterns of starts are tried:
 /// all off and all on.
 ///
-/// For one given number of levels above 40, with more than 900 columns, the search for the
-/// smoothness begins with 40 levels, where a candidate takes little time.
+/// For one given number of levels above 40, with more than 900 columns, the smoothness is searched
+/// for with 40 levels, where a candidate takes little time, and rated with all.
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -174,10 +174,12 @@ pub(super) fn choose(
         Problem::new(seen.operators, &options)
     };
     let first = candidates.levels.first().copied().unwrap_or(options.levels);
-    let mut problem = at(first, &options)?;
     if options.sign.is_none() && options.solver == Solver::Nnls {
-        options.sign = Some(problem.solve(kept, Progress::NONE)?.sign);
+        // Few levels tell it too.
+        let mut rough = at(first.min(COARSE), &options)?;
+        options.sign = Some(rough.solve(kept, Progress::NONE)?.sign);
     }
+    let problem = at(first, &options)?;
     let sign = options.sign.unwrap_or_default();
     let even = Experiment::new(seen.even, &options)?;
     let folds = Folds::new(Units::new(&even, kept, ENOUGH_BRANCHES), FOLDS);
@@ -194,11 +196,17 @@ pub(super) fn choose(
     };
     let is_large = |problem: &Problem<'_>| problem.regressor.columns().len() > MOST_COLUMNS;
     let open = candidates.smooth.is_none() && search.from.is_empty();
+    let least = |found: &[Score]| {
+        let values = found.iter().map(|score| criterion.value(score));
+        values.fold(f64::INFINITY, f64::min)
+    };
+    let mut best_value = f64::INFINITY;
+    // What fewer levels reach ends the walk at many, and is no candidate.
+    let mut coarse_value = f64::INFINITY;
     if open && first > COARSE && is_large(&problem) {
         let level = Level::new(at(COARSE, &options)?, sign, &folds, progress)?;
-        search.rate(&level, COARSE, f64::INFINITY)?;
+        coarse_value = least(&search.rate(&level, COARSE, f64::INFINITY)?);
     }
-    let mut best_value = f64::INFINITY;
     let mut no_better = 0;
     // A candidate takes time about as the cube of its levels.
     let time = |levels: &[usize]| levels.iter().map(|k| (*k as f64).powi(3)).sum::<f64>();
@@ -210,9 +218,8 @@ pub(super) fn choose(
             break;
         }
         let level = Level::new(problem, sign, &folds, progress)?;
-        let found = search.rate(&level, levels, best_value)?;
-        let values = found.iter().map(|score| criterion.value(score));
-        let value = values.fold(f64::INFINITY, f64::min);
+        let found = search.rate(&level, levels, best_value.min(coarse_value))?;
+        let value = least(&found);
         scores.extend(found);
         no_better = match criterion.is_worth(value, best_value, WORTH) {
             true => 0,

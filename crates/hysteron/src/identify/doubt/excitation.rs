@@ -72,7 +72,7 @@ impl Unresolved {
         operator: Operator,
         start: Initial,
     ) -> Result<Self> {
-        crate::identify::weights::problem::check_gram(plane.operators())?;
+        crate::identify::weights::room::check_dense(plane.operators())?;
         let count = plane.operators();
         let form = SparseForm::new(plane, operator)?;
         let mut gram = centred_gram(inputs, &form, start)?;

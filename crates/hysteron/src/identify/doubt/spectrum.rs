@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::doubt::excitation::centred_gram;
 use crate::identify::initial::Initial;
 use crate::identify::weights::not_definite::not_definite;
-use crate::identify::weights::problem::check_gram;
+use crate::identify::weights::room::check_dense;
 use crate::identify::weights::sparse::SparseForm;
 use crate::model::Plane;
 use crate::recording::Recording;
@@ -79,7 +79,7 @@ pub(crate) fn determined(
     if operators > MOST_OPERATORS {
         return Ok(None);
     }
-    check_gram(operators)?;
+    check_dense(operators)?;
     let form = SparseForm::new(plane, Operator::Mkp)?;
     let inputs: Vec<&[f64]> = recordings.iter().map(|r| r.input.as_slice()).collect();
     let gram = centred_gram(&inputs, &form, Initial::Off)?;

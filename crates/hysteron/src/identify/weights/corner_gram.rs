@@ -20,6 +20,8 @@ pub(crate) struct CornerGram {
     pub(crate) values: Vec<f64>,
     /// The structure of the factors, shared by all matrices whose elements are among these.
     pattern: Arc<OnceLock<Option<Pattern>>>,
+    /// The diagonal over the weights, once it was asked for.
+    diagonal: OnceLock<Vec<f64>>,
 }
 
 impl CornerGram {
@@ -65,7 +67,11 @@ impl CornerGram {
     }
 
     /// The diagonal over the weights.
-    pub(crate) fn diagonal(&self) -> Vec<f64> {
+    pub(crate) fn diagonal(&self) -> &[f64] {
+        self.diagonal.get_or_init(|| self.over_weights())
+    }
+
+    fn over_weights(&self) -> Vec<f64> {
         let layout = &self.layout;
         let places: Vec<(usize, usize)> = operators(layout.levels()).collect();
         let mut own = vec![None; layout.count];
@@ -156,6 +162,7 @@ impl CornerGram {
             self.pattern = Arc::default();
         }
         (self.starts, self.places, self.values) = (starts, places, values);
+        self.diagonal = OnceLock::new();
     }
 }
 
@@ -216,6 +223,7 @@ impl CornerSums {
             places: elements.iter().map(|(key, _)| *key as u32).collect(),
             values: elements.into_iter().map(|(_, sum)| sum).collect(),
             pattern: Arc::default(),
+            diagonal: OnceLock::new(),
         }
     }
 }

@@ -1,9 +1,11 @@
 //! The normal equations with a prior, from a sparse Gram matrix over Everett corners.
 
+use crate::error::Result;
 use crate::identify::weights::corner_gram::CornerGram;
 use crate::identify::weights::gram::dot;
 use crate::identify::weights::grid_factor::Factor;
 use crate::identify::weights::nnls::Quadratic;
+use crate::identify::weights::room::check_dense;
 use crate::identify::weights::smoothness::Smoothness;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -31,7 +33,7 @@ const GOOD: f64 = 1e-10;
 
 /// `Aᵀ A`, with the free columns eliminated, plus the prior.
 pub(crate) struct CornerSystem {
-    gram: CornerGram,
+    gram: Arc<CornerGram>,
     /// `Aᵀ z` of the free columns, and `(Zᵀ Z)⁻¹`.
     mixed: Vec<Vec<f64>>,
     inverse: Vec<Vec<f64>>,
@@ -45,8 +47,8 @@ pub(crate) struct CornerSystem {
 }
 
 impl CornerSystem {
-    pub(crate) fn new(gram: CornerGram, mixed: Vec<Vec<f64>>, inverse: Vec<Vec<f64>>) -> Self {
-        let mut diagonal = gram.diagonal();
+    pub(crate) fn new(gram: Arc<CornerGram>, mixed: Vec<Vec<f64>>, inverse: Vec<Vec<f64>>) -> Self {
+        let mut diagonal = gram.diagonal().to_vec();
         for (a, left) in mixed.iter().enumerate() {
             for (b, right) in mixed.iter().enumerate() {
                 let products = left.iter().zip(right);
@@ -82,14 +84,15 @@ impl CornerSystem {
 
     /// All elements over weights, row by row. Over corners the strongest penalties are worse
     /// conditioned than over weights, so a factor may fail there and exist here.
-    pub(crate) fn dense(&self) -> Vec<f64> {
+    pub(crate) fn dense(&self) -> Result<Vec<f64>> {
         let count = self.diagonal.len();
+        check_dense(count)?;
         let mut matrix = self.gram.dense();
         eliminate(&mut matrix, &self.mixed, &self.inverse);
         self.smoothness
             .add_to(&mut matrix, &self.gram.layout.columns);
         (0..count).for_each(|n| matrix[n * count + n] += self.ridge);
-        matrix
+        Ok(matrix)
     }
 
     /// The product with a vector of weights.
@@ -369,6 +372,7 @@ mod tests {
     use hysteron_core::Operator;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use std::sync::Arc;
 
     /// A walk with legs of any length, in some problems with noise on every sample.
     fn recording(rng: &mut ChaCha8Rng, load: bool) -> Recording {
@@ -477,7 +481,7 @@ mod tests {
                 NormalEquations::of_gram(regressor, experiment, &free, None, prior, gram).unwrap()
             };
             let dense = of(Gram::Dense(plain[0].clone()));
-            let sparse = of(Gram::Corners(gram));
+            let sparse = of(Gram::Corners(Arc::new(gram)));
             // The strongest penalties are not definite in floating point, in either form.
             let [whole, corners] =
                 [&dense, &sparse].map(|own| own.penalised.half_log_determinants(regressor));
@@ -561,7 +565,7 @@ mod tests {
             .unwrap()
             .mixed(regressor, experiment)
             .unwrap();
-        let system = super::CornerSystem::new(gram, free.columns, free.inverse);
+        let system = super::CornerSystem::new(Arc::new(gram), free.columns, free.inverse);
         let smoothness =
             super::Smoothness::new(problem.regressor.plane().levels(), options.smooth, 100.0);
         let system = system.with(smoothness, 1e-3);

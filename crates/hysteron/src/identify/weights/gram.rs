@@ -1,7 +1,10 @@
 //! A Gram matrix over weights, dense or sparse over Everett corners.
 
+use crate::error::Result;
 use crate::identify::weights::corner_gram::CornerGram;
+use crate::identify::weights::room::{MOST_BYTES, check_dense};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// With fewer columns than this a dense factor takes no time.
 pub(crate) const MANY: usize = 300;
@@ -14,29 +17,35 @@ const SPARSE: f64 = 0.25;
 pub(crate) enum Gram {
     /// Row by row.
     Dense(Vec<f64>),
-    Corners(CornerGram),
+    Corners(Arc<CornerGram>),
 }
 
 impl Gram {
     /// The matrices of groups over the same corners, in the form that solves faster.
-    pub(crate) fn of_corners(mut all: Vec<CornerGram>) -> Vec<Self> {
+    ///
+    /// # Errors
+    /// [`crate::Error::Fit`] if neither form has room.
+    pub(crate) fn of_corners(mut all: Vec<CornerGram>) -> Result<Vec<Self>> {
         let Some(mut whole) = all.first().cloned() else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         all[1..].iter().for_each(|other| whole.combine(1.0, other));
         let dense = whole.layout.count.pow(2) as f64 / 2.0;
-        let few = |count: usize| (count as f64) < SPARSE * dense;
+        let few = |count: usize| (count as f64) < SPARSE * dense && 8 * count as u128 <= MOST_BYTES;
         // The structure is found only where it is likely to be small.
         let sparse =
             few(whole.places.len()) && whole.pattern().is_some_and(|pattern| few(pattern.fill()));
+        if !sparse {
+            check_dense(whole.layout.count)?;
+        }
         let form = |mut gram: CornerGram| {
             gram.share_pattern(&whole);
             match sparse {
-                true => Self::Corners(gram),
+                true => Self::Corners(Arc::new(gram)),
                 false => Self::Dense(gram.dense()),
             }
         };
-        all.drain(..).map(form).collect()
+        Ok(all.drain(..).map(form).collect())
     }
 
     /// All elements, row by row.
@@ -50,14 +59,16 @@ impl Gram {
     pub(crate) fn diagonal(&self, count: usize) -> Vec<f64> {
         match self {
             Self::Dense(gram) => (0..count).map(|n| gram[n * count + n]).collect(),
-            Self::Corners(gram) => gram.diagonal(),
+            Self::Corners(gram) => gram.diagonal().to_vec(),
         }
     }
 
     /// This matrix plus `factor` times the other.
     pub(crate) fn combine(&mut self, factor: f64, other: &Self) {
         match (self, other) {
-            (Self::Corners(own), Self::Corners(other)) => own.combine(factor, other),
+            (Self::Corners(own), Self::Corners(other)) => {
+                Arc::make_mut(own).combine(factor, other);
+            }
             (Self::Dense(own), other) => {
                 let other = other.dense();
                 own.iter_mut()

@@ -26,6 +26,7 @@ pub(super) mod of_load;
 pub(crate) mod pivoting;
 pub(super) mod problem;
 pub(super) mod regressor;
+pub(super) mod room;
 pub(super) mod rows;
 pub(super) mod smoothness;
 pub(super) mod solve;

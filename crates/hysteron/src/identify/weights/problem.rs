@@ -5,6 +5,7 @@ use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::regressor::Regressor;
+use crate::identify::weights::room::{check_columns, check_dense};
 use crate::identify::weights::solve::{NormalEquations, Penalised, STEPS, Solution};
 use crate::model::{LoadPart, Sign};
 use crate::model::{Solver, Start};
@@ -12,9 +13,6 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 use std::sync::Arc;
-
-/// Largest size of the Gram matrix, in bytes.
-const GRAM_BYTES: u128 = 4 << 30;
 
 /// One sign is better than the other if it explains this share of the squares more. Rounding of the
 /// sums is far below it.
@@ -47,7 +45,12 @@ impl<'a> Problem<'a> {
         } else {
             1
         };
-        check_gram(plane.operators() * experiment.parts.len() * sides)?;
+        let columns = plane.operators() * experiment.parts.len() * sides;
+        check_columns(columns)?;
+        if options.bootstrap > 0 {
+            // What the data determine is told by all eigenvalues.
+            check_dense(columns)?;
+        }
         let regressor = Regressor::new(plane, options, &experiment)?;
         Ok(Self {
             experiment,
@@ -163,7 +166,7 @@ impl<'a> Problem<'a> {
     ) -> Result<(Fitted, Arc<Penalised>)> {
         let free = self.free(kept)?;
         loop {
-            check_gram(self.regressor.columns().len())?;
+            check_columns(self.regressor.columns().len())?;
             let (fitted, slopes, penalised) = {
                 let levels = self.regressor.plane().levels();
                 let start = self.coarse(levels, &free, kept, progress)?;
@@ -258,20 +261,6 @@ impl<'a> Problem<'a> {
         }
         Ok(fitted)
     }
-}
-
-/// Checks that the Gram matrix of this many columns is not too large.
-pub(crate) fn check_gram(columns: usize) -> Result<()> {
-    let bytes = 8 * (columns as u128).pow(2);
-    if bytes <= GRAM_BYTES {
-        return Ok(());
-    }
-    Err(Error::Fit(format!(
-        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB \
-         allowed: take fewer levels",
-        bytes as f64 / f64::from(1 << 30),
-        GRAM_BYTES >> 30
-    )))
 }
 
 /// Checks what the data do not decide.

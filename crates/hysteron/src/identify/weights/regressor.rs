@@ -19,6 +19,7 @@ use crate::identify::weights::corner_gram::{CornerGram, CornerSums, OfBlocks};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::{Gram, MANY};
 use crate::identify::weights::layout::{Block, Layout};
+use crate::identify::weights::room::check_dense;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::sparse::{OPEN, SparseForm, Square};
 use crate::model::Plane;
@@ -293,6 +294,7 @@ impl Regressor {
         progress: Progress<'_>,
     ) -> Result<Vec<Vec<f64>>> {
         let (operators, columns) = (self.form.operators(), self.columns.len());
+        check_dense(columns)?;
         let mut grams = vec![Vec::new(); count];
         for recordings in self.alike(experiment) {
             let starts = self.starts(recordings.start);
@@ -360,7 +362,7 @@ impl Regressor {
         if self.columns.len() >= MANY
             && let Some(all) = self.corner_grams(experiment, count, &group, progress)?
         {
-            return Ok(Gram::of_corners(all));
+            return Gram::of_corners(all);
         }
         let all = self.grams(experiment, count, group, progress)?;
         Ok(all.into_iter().map(Gram::Dense).collect())

@@ -163,7 +163,7 @@ impl Penalised {
             Matrix::Dense(matrix) => Cow::Borrowed(matrix),
             Matrix::Corners(system) => match system.half_log_determinants() {
                 Some(found) if !self.strong => return Ok(found),
-                _ => Cow::Owned(system.dense()),
+                _ => Cow::Owned(system.dense()?),
             },
         };
         let count = regressor.columns().len();
@@ -195,7 +195,7 @@ impl Penalised {
                 let all: Vec<usize> = (0..right.len()).collect();
                 return match system.free_minimum(right, &all) {
                     Some(x) => Ok(x),
-                    None => Ok(solved(&dense_factor(&system.dense())?)),
+                    None => Ok(solved(&dense_factor(&system.dense()?)?)),
                 };
             }
             _ => {}
@@ -246,7 +246,7 @@ impl Penalised {
         let matrix = match &self.matrix {
             Matrix::Dense(matrix) => Cow::Borrowed(matrix),
             Matrix::Corners(system) if system.can_factor() => return Ok(WholeFactor::Corners),
-            Matrix::Corners(system) => Cow::Owned(system.dense()),
+            Matrix::Corners(system) => Cow::Owned(system.dense()?),
         };
         Ok(WholeFactor::Dense(dense_factor(&matrix)?))
     }
