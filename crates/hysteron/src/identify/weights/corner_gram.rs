@@ -20,6 +20,8 @@ pub(crate) struct CornerGram {
     pub(crate) values: Vec<f64>,
     /// The structure of the factors, shared by all matrices whose elements are among these.
     pattern: Arc<OnceLock<Option<Pattern>>>,
+    /// Whether its factors are sparse, too.
+    pub(crate) is_factored: bool,
     /// The diagonal over the weights, once it was asked for.
     diagonal: OnceLock<Vec<f64>>,
 }
@@ -112,6 +114,16 @@ impl CornerGram {
     /// All elements over weights, row by row.
     pub(crate) fn dense(&self) -> Vec<f64> {
         let count = self.layout.count;
+        if let Some(form) = self.layout.whole_plane() {
+            let mut all = vec![0.0; count * count];
+            for (n, row) in all.chunks_exact_mut(count).enumerate() {
+                for k in self.starts[n]..self.starts[n + 1] {
+                    row[self.places[k] as usize] = self.values[k];
+                }
+            }
+            form.gram_of(&mut all);
+            return all;
+        }
         let mut half = vec![0.0; count * count];
         for (n, row) in half.chunks_exact_mut(count).enumerate() {
             let mut elements = vec![0.0; count];
@@ -223,6 +235,7 @@ impl CornerSums {
             places: elements.iter().map(|(key, _)| *key as u32).collect(),
             values: elements.into_iter().map(|(_, sum)| sum).collect(),
             pattern: Arc::default(),
+            is_factored: true,
             diagonal: OnceLock::new(),
         }
     }

@@ -6,10 +6,15 @@ use crate::identify::weights::room::{MOST_BYTES, check_dense};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// With fewer columns than this a dense factor takes no time.
+/// With fewer columns than this no sums are kept sparse.
 pub(crate) const MANY: usize = 300;
 
-/// The sparse form is used if its factor has less than this share of the elements of a dense one.
+/// With fewer columns than this a dense factor takes less time than a sparse one: it is that of the
+/// weights above zero alone.
+const FACTORED: usize = 500;
+
+/// Elements are kept sparse if there are less than this share of those of a dense factor, and so are
+/// those of factors.
 const SPARSE: f64 = 0.25;
 
 /// `Aᵀ A` of some samples.
@@ -21,26 +26,32 @@ pub(crate) enum Gram {
 }
 
 impl Gram {
-    /// The matrices of groups over the same corners, in the form that solves faster.
+    /// The matrices of groups over the same corners, in the form that is faster.
     ///
     /// # Errors
-    /// [`crate::Error::Fit`] if neither form has room.
+    /// [`crate::Error::Fit`] if no form has room.
     pub(crate) fn of_corners(mut all: Vec<CornerGram>) -> Result<Vec<Self>> {
         let Some(mut whole) = all.first().cloned() else {
             return Ok(Vec::new());
         };
         all[1..].iter().for_each(|other| whole.combine(1.0, other));
-        let dense = whole.layout.count.pow(2) as f64 / 2.0;
+        let columns = whole.layout.count;
+        let dense = columns.pow(2) as f64 / 2.0;
         let few = |count: usize| (count as f64) < SPARSE * dense && 8 * count as u128 <= MOST_BYTES;
+        let is_sparse = few(whole.places.len());
         // The structure is found only where it is likely to be small.
-        let sparse =
-            few(whole.places.len()) && whole.pattern().is_some_and(|pattern| few(pattern.fill()));
-        if !sparse {
-            check_dense(whole.layout.count)?;
+        let is_factored = is_sparse
+            && columns >= FACTORED
+            && whole.pattern().is_some_and(|pattern| few(pattern.fill()));
+        if !is_factored {
+            check_dense(columns)?;
         }
         let form = |mut gram: CornerGram| {
-            gram.share_pattern(&whole);
-            match sparse {
+            gram.is_factored = is_factored;
+            if is_factored {
+                gram.share_pattern(&whole);
+            }
+            match is_sparse {
                 true => Self::Corners(Arc::new(gram)),
                 false => Self::Dense(gram.dense()),
             }
@@ -53,6 +64,14 @@ impl Gram {
         match self {
             Self::Dense(gram) => Cow::Borrowed(gram),
             Self::Corners(gram) => Cow::Owned(gram.dense()),
+        }
+    }
+
+    /// As [`Gram::dense`].
+    pub(crate) fn into_dense(self) -> Vec<f64> {
+        match self {
+            Self::Dense(gram) => gram,
+            Self::Corners(gram) => gram.dense(),
         }
     }
 

@@ -77,6 +77,15 @@ impl Layout {
         self.form.plane().levels()
     }
 
+    /// The operators, if there is one block, with a column for each of them in their order.
+    pub(crate) fn whole_plane(&self) -> Option<&SparseForm> {
+        let [block] = &self.blocks[..] else {
+            return None;
+        };
+        let in_order = (0..).zip(&block.columns).all(|(n, column)| n == *column);
+        in_order.then_some(&self.form)
+    }
+
     /// `S x` or `Sᵀ x`, block by block.
     fn sums(&self, x: &[f64], sum: impl Fn(&SparseForm, &mut [f64])) -> Vec<f64> {
         let mut result = vec![0.0; self.count];

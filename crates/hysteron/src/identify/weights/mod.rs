@@ -5,7 +5,7 @@
 //! loads. `units` divides the samples into branches or parts of them; `sums` and `unit_sums` are
 //! products of groups of samples, from which fits and their errors follow without the samples.
 //! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting` and `cholesky`. With many levels the Gram matrix is kept
+//! equations with `nnls`, `pivoting` and `cholesky`, from where `nested` begins. With many levels the Gram matrix is kept
 //! sparse, over Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`;
 //! `coarse` says where their search begins. `again` fits the same inputs to other outputs.
 
@@ -20,6 +20,7 @@ pub(super) mod free;
 pub(super) mod gram;
 pub(super) mod grid_factor;
 pub(super) mod layout;
+pub(super) mod nested;
 pub(crate) mod nnls;
 pub(super) mod not_definite;
 pub(super) mod of_load;

@@ -12,6 +12,7 @@ use crate::identify::weights::corner_system::{CornerSystem, eliminate};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::{FreeColumns, Mixed};
 use crate::identify::weights::gram::Gram;
+use crate::identify::weights::nested::Squares;
 use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::smoothness::Smoothness;
@@ -41,6 +42,9 @@ const NOTHING_LEFT: f64 = 1e-26;
 /// after the point.
 const STRONG: f64 = 1e-3;
 
+/// Stronger ones are solved with all elements over weights, up to so many columns.
+const DENSE: usize = 5000;
+
 /// Largest number of proximal steps of a fit.
 pub(crate) const STEPS: usize = 200;
 
@@ -66,6 +70,8 @@ pub(crate) struct Penalised {
     matrix: Matrix,
     /// The sum of both ridges.
     pub(crate) ridge: f64,
+    /// Where a search of smooth weights from zero begins.
+    squares: Squares,
     /// Whether the smoothness is stronger than [`STRONG`].
     strong: bool,
 }
@@ -100,8 +106,23 @@ impl Penalised {
             let tiny = RIDGE * with_penalty + ROUNDING * largest;
             (shrink, shrink + tiny.max(f64::MIN_POSITIVE))
         };
+        let strong = prior.smooth.along.max(prior.smooth.across) > STRONG;
         let (matrix, (shrink, ridge)) = match gram {
-            Gram::Dense(mut matrix) => {
+            Gram::Corners(gram) if gram.is_factored && !(strong && count <= DENSE) => {
+                let system = CornerSystem::new(gram, mixed.columns, mixed.inverse);
+                let before = system.mean_diagonal();
+                let mut penalty = vec![0.0; count];
+                smoothness.add_diagonal(&mut penalty, regressor.columns());
+                let mean = before + penalty.iter().sum::<f64>() / count as f64;
+                let ridges = ridges(before, mean);
+                let own = Smoothness::new(regressor.plane().levels(), prior.smooth, samples);
+                (
+                    Matrix::Corners(Box::new(system.with(own, ridges.1))),
+                    ridges,
+                )
+            }
+            gram => {
+                let mut matrix = gram.into_dense();
                 eliminate(&mut matrix, &mixed.columns, &mixed.inverse);
                 let mean = |matrix: &[f64]| {
                     let diagonal = (0..count).map(|n| matrix[n * count + n]);
@@ -115,26 +136,20 @@ impl Penalised {
                 }
                 (Matrix::Dense(matrix), ridges)
             }
-            Gram::Corners(gram) => {
-                let system = CornerSystem::new(gram, mixed.columns, mixed.inverse);
-                let before = system.mean_diagonal();
-                let mut penalty = vec![0.0; count];
-                smoothness.add_diagonal(&mut penalty, regressor.columns());
-                let mean = before + penalty.iter().sum::<f64>() / count as f64;
-                let ridges = ridges(before, mean);
-                let own = Smoothness::new(regressor.plane().levels(), prior.smooth, samples);
-                (
-                    Matrix::Corners(Box::new(system.with(own, ridges.1))),
-                    ridges,
-                )
+        };
+        let squares = match &matrix {
+            Matrix::Dense(_) if smoothness.is_any() => {
+                Squares::new(regressor.columns(), regressor.plane().levels())
             }
+            _ => Squares::default(),
         };
         Self {
+            squares,
             smoothness,
             shrink,
             matrix,
             ridge,
-            strong: prior.smooth.along.max(prior.smooth.across) > STRONG,
+            strong,
         }
     }
 
@@ -203,7 +218,13 @@ impl Penalised {
         // With smoothness most weights are not zero, so try block pivoting first.
         let (mut x, exact) = match (self.smoothness.is_any(), &self.matrix) {
             (false, _) => (start.iter().map(|x| x.max(0.0)).collect(), false),
-            (true, Matrix::Dense(matrix)) => pivoting::minimum(matrix, right, start),
+            (true, Matrix::Dense(matrix)) => {
+                let near = match start.iter().all(|x| *x == 0.0) {
+                    true => Cow::Owned(self.squares.start(matrix, right)),
+                    false => Cow::Borrowed(start),
+                };
+                pivoting::minimum(matrix, right, &near)
+            }
             (true, Matrix::Corners(system)) => {
                 let gradient = |members: &[usize], values: &[f64]| {
                     let mut x = vec![0.0; right.len()];
