@@ -37,10 +37,6 @@ const FEWEST: usize = 28;
 /// unknown start up to twice as many.
 const MOST_COLUMNS: usize = 900;
 
-/// With more columns than [`MOST_COLUMNS`], the smoothness is searched for with so many levels. The
-/// strengths do not depend on the number of levels, so the best is not far from there.
-const COARSE: usize = 40;
-
 /// From so many levels on a candidate takes long. The smoothness that was best with fewer levels
 /// is rated first, because the strengths do not depend on the number of levels. A search then goes
 /// along the axes, unless that first one is worse than the best of fewer levels by more than one
@@ -48,7 +44,8 @@ const COARSE: usize = 40;
 const FINE: usize = 20;
 
 /// With more levels than this, that first one is the only candidate: a search has hardly anything
-/// left to gain, and takes longer than all before.
+/// left to gain, and takes longer than all before. So the smoothness of one given number of levels
+/// above it is searched for with so many first.
 const SEARCHED: usize = 28;
 
 /// A search goes on while it gains this share. On a plateau any place will do.
@@ -87,8 +84,8 @@ impl Candidates {
 /// levels. If the starts of several recordings are unknown, only two patterns of starts are tried:
 /// all off and all on.
 ///
-/// For one given number of levels above 40, with more than 900 columns, the smoothness is searched
-/// for with 40 levels, where a candidate takes little time, and rated with all.
+/// For one given number of levels above 28, the smoothness is searched for with 28, where a candidate
+/// takes little time, and rated with all.
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -176,10 +173,9 @@ pub(super) fn choose(
     let first = candidates.levels.first().copied().unwrap_or(options.levels);
     if options.sign.is_none() && options.solver == Solver::Nnls {
         // Few levels tell it too.
-        let mut rough = at(first.min(COARSE), &options)?;
+        let mut rough = at(first.min(SEARCHED), &options)?;
         options.sign = Some(rough.solve(kept, Progress::NONE)?.sign);
     }
-    let problem = at(first, &options)?;
     let sign = options.sign.unwrap_or_default();
     let even = Experiment::new(seen.even, &options)?;
     let folds = Folds::new(Units::new(&even, kept, ENOUGH_BRANCHES), FOLDS);
@@ -194,7 +190,6 @@ pub(super) fn choose(
         smooth: candidates.smooth,
         from: near.and_then(place_of).into_iter().collect(),
     };
-    let is_large = |problem: &Problem<'_>| problem.regressor.columns().len() > MOST_COLUMNS;
     let open = candidates.smooth.is_none() && search.from.is_empty();
     let least = |found: &[Score]| {
         let values = found.iter().map(|score| criterion.value(score));
@@ -203,9 +198,9 @@ pub(super) fn choose(
     let mut best_value = f64::INFINITY;
     // What fewer levels reach ends the walk at many, and is no candidate.
     let mut coarse_value = f64::INFINITY;
-    if open && first > COARSE && is_large(&problem) {
-        let level = Level::new(at(COARSE, &options)?, sign, &folds, progress)?;
-        coarse_value = least(&search.rate(&level, COARSE, f64::INFINITY)?);
+    if open && first > SEARCHED {
+        let level = Level::new(at(SEARCHED, &options)?, sign, &folds, progress)?;
+        coarse_value = least(&search.rate(&level, SEARCHED, f64::INFINITY)?);
     }
     let mut no_better = 0;
     // A candidate takes time about as the cube of its levels.
@@ -214,7 +209,7 @@ pub(super) fn choose(
         let done = time(&candidates.levels[..n]) / time(&candidates.levels);
         progress.tell("choice of levels", done)?;
         let problem = at(levels, &options)?;
-        if n > 0 && is_large(&problem) {
+        if n > 0 && problem.regressor.columns().len() > MOST_COLUMNS {
             break;
         }
         let level = Level::new(problem, sign, &folds, progress)?;

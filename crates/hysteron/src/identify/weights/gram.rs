@@ -9,9 +9,9 @@ use std::sync::Arc;
 /// With fewer columns than this no sums are kept sparse.
 pub(crate) const MANY: usize = 300;
 
-/// With fewer columns than this a dense factor takes less time than a sparse one: it is that of the
-/// weights above zero alone.
-const FACTORED: usize = 500;
+/// With fewer columns than this, one for each operator, a dense factor takes less time than a sparse
+/// one: it is that of the weights above zero alone.
+const FACTORED: usize = 900;
 
 /// Elements are kept sparse if there are less than this share of those of a dense factor, and so are
 /// those of factors.
@@ -39,9 +39,11 @@ impl Gram {
         let dense = columns.pow(2) as f64 / 2.0;
         let few = |count: usize| (count as f64) < SPARSE * dense && 8 * count as u128 <= MOST_BYTES;
         let is_sparse = few(whole.places.len());
+        // All elements of a whole plane are found at once, and need not be held.
+        let is_whole = whole.layout.whole_plane().is_some();
         // The structure is found only where it is likely to be small.
         let is_factored = is_sparse
-            && columns >= FACTORED
+            && !(is_whole && columns < FACTORED)
             && whole.pattern().is_some_and(|pattern| few(pattern.fill()));
         if !is_factored {
             check_dense(columns)?;
@@ -51,7 +53,7 @@ impl Gram {
             if is_factored {
                 gram.share_pattern(&whole);
             }
-            match is_sparse {
+            match is_factored || (is_sparse && is_whole) {
                 true => Self::Corners(Arc::new(gram)),
                 false => Self::Dense(gram.dense()),
             }
