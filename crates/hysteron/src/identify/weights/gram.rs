@@ -11,7 +11,7 @@ pub(crate) const MANY: usize = 300;
 
 /// With fewer columns than this, one for each operator, a dense factor takes less time than a sparse
 /// one: it is that of the weights above zero alone.
-const FACTORED: usize = 900;
+const FACTORED: usize = 500;
 
 /// Elements are kept sparse if there are less than this share of those of a dense factor, and so are
 /// those of factors.
