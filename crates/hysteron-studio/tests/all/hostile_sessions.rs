@@ -180,7 +180,7 @@ fn absurd_requests_are_refused_before_they_start() {
     for (name, value) in [
         ("bootstrap", "99999999"),
         ("levels", "1000000"),
-        ("levels", "400"),
+        ("levels", "1000"),
     ] {
         let fit = json!({"request": "fit", "options": {name: value}});
         let refused = session.handle(serde_json::from_value(fit).unwrap());
