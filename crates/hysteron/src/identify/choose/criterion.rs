@@ -98,13 +98,13 @@ impl<'a> Level<'a> {
             self.progress.tell("choice of levels", f64::NAN)?;
             let Fold { own, rest } = &self.folds[n];
             let start = near.as_ref().unwrap_or(&before[n]);
-            let solved = |rest: &Reduced| {
+            let solve = |rest: &Reduced| {
                 let penalised = rest.penalised(self.prior(smooth), &self.problem);
                 rest.solve(&penalised, solver, start, Progress::NONE)
             };
             let at = match rest {
-                Some(rest) => solved(rest)?,
-                None => solved(&self.all.without(own).reduced()?)?,
+                Some(rest) => solve(rest)?,
+                None => solve(&self.all.without(own).reduced()?)?,
             };
             Ok((own.error(&at), at.x))
         })?;

@@ -196,7 +196,7 @@ pub(super) fn choose(
         values.fold(f64::INFINITY, f64::min)
     };
     let mut best_value = f64::INFINITY;
-    // What fewer levels reach ends the walk at many, and is no candidate.
+    // The best value with fewer levels than the one that is given. It is compared with, not chosen.
     let mut coarse_value = f64::INFINITY;
     if open && first > SEARCHED {
         let level = Level::new(at(SEARCHED, &options)?, sign, &folds, progress)?;

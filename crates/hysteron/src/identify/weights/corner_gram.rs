@@ -114,23 +114,19 @@ impl CornerGram {
     /// All elements over weights, row by row.
     pub(crate) fn dense(&self) -> Vec<f64> {
         let count = self.layout.count;
-        if let Some(form) = self.layout.whole_plane() {
-            let mut all = vec![0.0; count * count];
-            for (n, row) in all.chunks_exact_mut(count).enumerate() {
-                for k in self.starts[n]..self.starts[n + 1] {
-                    row[self.places[k] as usize] = self.values[k];
-                }
-            }
-            form.gram_of(&mut all);
-            return all;
-        }
         let mut half = vec![0.0; count * count];
         for (n, row) in half.chunks_exact_mut(count).enumerate() {
-            let mut elements = vec![0.0; count];
             for k in self.starts[n]..self.starts[n + 1] {
-                elements[self.places[k] as usize] = self.values[k];
+                row[self.places[k] as usize] = self.values[k];
             }
-            row.copy_from_slice(&self.layout.gathered(&elements));
+        }
+        if let Some(form) = self.layout.whole_plane() {
+            form.gram_of(&mut half);
+            return half;
+        }
+        for row in half.chunks_exact_mut(count) {
+            let gathered = self.layout.gathered(row);
+            row.copy_from_slice(&gathered);
         }
         let mut all = vec![0.0; count * count];
         for n in 0..count {

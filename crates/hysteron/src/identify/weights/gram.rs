@@ -6,15 +6,15 @@ use crate::identify::weights::room::{MOST_BYTES, check_dense};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// With fewer columns than this no sums are kept sparse.
+/// With fewer columns than this all elements are held.
 pub(crate) const MANY: usize = 300;
 
-/// With fewer columns than this, one for each operator, a dense factor takes less time than a sparse
-/// one: it is that of the weights above zero alone.
+/// With fewer columns than this, one for each operator, a dense factor takes less time than a
+/// sparse one: it is that of the weights above zero alone.
 const FACTORED: usize = 500;
 
-/// Elements are kept sparse if there are less than this share of those of a dense factor, and so are
-/// those of factors.
+/// Elements of a matrix are kept sparse if they are less than this share of those of a dense factor.
+/// So are elements of a factor.
 const SPARSE: f64 = 0.25;
 
 /// `Aᵀ A` of some samples.
@@ -36,7 +36,7 @@ impl Gram {
         };
         all[1..].iter().for_each(|other| whole.combine(1.0, other));
         let columns = whole.layout.count;
-        let dense = columns.pow(2) as f64 / 2.0;
+        let dense = (columns as f64).powi(2) / 2.0;
         let few = |count: usize| (count as f64) < SPARSE * dense && 8 * count as u128 <= MOST_BYTES;
         let is_sparse = few(whole.places.len());
         // All elements of a whole plane are found at once, and need not be held.

@@ -5,10 +5,10 @@
 //! loads. `units` divides the samples into branches or parts of them; `sums` and `unit_sums` are
 //! products of groups of samples, from which fits and their errors follow without the samples.
 //! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting` and `cholesky`, from where `nested` begins. With many levels the
-//! Gram matrix is kept sparse, over Everett corners: `layout`, `corner_gram`, `corner_system` and
-//! `grid_factor`; `coarse` says where their search begins, and `room` what has none. `again` fits the
-//! same inputs to other outputs.
+//! equations with `nnls`, `pivoting` and `cholesky`; `nested` says where a search begins. With many
+//! levels the Gram matrix is kept sparse, over Everett corners: `layout`, `corner_gram`,
+//! `corner_system` and `grid_factor`; `coarse` says where their search begins. `room` limits the
+//! memory. `again` fits the same inputs to other outputs.
 
 pub(super) mod again;
 pub(super) mod cholesky;

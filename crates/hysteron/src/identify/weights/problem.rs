@@ -48,7 +48,7 @@ impl<'a> Problem<'a> {
         let columns = plane.operators() * experiment.parts.len() * sides;
         check_columns(columns)?;
         if options.bootstrap > 0 {
-            // What the data determine is told by all eigenvalues.
+            // It needs all eigenvalues of the matrix.
             check_dense(columns)?;
         }
         let regressor = Regressor::new(plane, options, &experiment)?;

@@ -19,6 +19,7 @@ use crate::identify::weights::corner_gram::{CornerGram, CornerSums, OfBlocks};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::{Gram, MANY};
 use crate::identify::weights::layout::{Block, Layout};
+use crate::identify::weights::nested::Squares;
 use crate::identify::weights::room::check_dense;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::sparse::{OPEN, SparseForm, Square};
@@ -26,7 +27,7 @@ use crate::model::Plane;
 use crate::model::Start;
 use crate::progress::Progress;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Columns in blocks, and the function of the load and the start of each block.
 type Blocks = (Arc<Layout>, Vec<(usize, Initial)>);
@@ -38,6 +39,8 @@ pub(crate) struct Regressor {
     /// its state. Empty if the start is known.
     open: Vec<u64>,
     columns: Vec<Column>,
+    /// Where searches begin, once one was made.
+    squares: OnceLock<Arc<Squares>>,
     /// The state of the operators that do not start on.
     known: Initial,
     /// Number of operators whose state the first sample of some recording does not determine.
@@ -52,6 +55,7 @@ impl Regressor {
             open: Vec::new(),
             open_at_start: 0,
             columns: Vec::new(),
+            squares: OnceLock::new(),
             known: match options.initial() {
                 // Columns say themselves that they start on.
                 Initial::On => Initial::Off,
@@ -119,6 +123,12 @@ impl Regressor {
 
     pub(crate) fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    /// Where a search for smooth weights from zero begins.
+    pub(super) fn squares(&self) -> Arc<Squares> {
+        let squares = || Arc::new(Squares::new(&self.columns, self.plane().levels()));
+        self.squares.get_or_init(squares).clone()
     }
 
     /// Number of functions of the load.
@@ -476,6 +486,7 @@ impl Regressor {
                 let column = Column { part, operator, on };
                 if descent > slack && !self.columns.contains(&column) {
                     self.columns.push(column);
+                    self.squares = OnceLock::new();
                 }
             }
         }

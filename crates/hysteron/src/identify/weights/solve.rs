@@ -71,7 +71,7 @@ pub(crate) struct Penalised {
     /// The sum of both ridges.
     pub(crate) ridge: f64,
     /// Where a search of smooth weights from zero begins.
-    squares: Squares,
+    squares: Arc<Squares>,
     /// Whether the smoothness is stronger than [`STRONG`].
     strong: bool,
 }
@@ -138,10 +138,8 @@ impl Penalised {
             }
         };
         let squares = match &matrix {
-            Matrix::Dense(_) if smoothness.is_any() => {
-                Squares::new(regressor.columns(), regressor.plane().levels())
-            }
-            _ => Squares::default(),
+            Matrix::Dense(_) if smoothness.is_any() => regressor.squares(),
+            _ => Arc::default(),
         };
         Self {
             squares,

@@ -62,7 +62,8 @@ impl Sums {
 
     /// The groups of each pass, so that their Gram matrices take no more than 256 MiB.
     pub(crate) fn passes(problem: &Problem, count: usize) -> Vec<Range<usize>> {
-        let matrix = 8 * problem.regressor.columns().len().pow(2);
+        let columns = problem.regressor.columns().len();
+        let matrix = columns.saturating_mul(columns).saturating_mul(8);
         let at_once = (PASS_BYTES / matrix.max(1)).clamp(1, count.max(1));
         let starts = (0..count).step_by(at_once);
         starts.map(|n| n..(n + at_once).min(count)).collect()
