@@ -8,7 +8,9 @@
 
 use super::explained::{explained, may_stand_still, stands_still};
 use super::judge::{apart, from_kept, mean, unseen};
-use super::suspects::{Suspect, all_jumps, of_models, of_the_series, with_that_of_the_error};
+use super::suspects::{
+    HALF, Suspect, all_jumps, are_fewer, of_models, of_the_series, with_that_of_the_error,
+};
 use crate::recording::Recording;
 use crate::series::spread::usual_span;
 use std::ops::Range;
@@ -23,8 +25,6 @@ const LEAST: f64 = 0.01;
 const LEAST_AT_START: f64 = 0.03;
 /// Where the readings of the rows themselves are suspect, less is enough.
 const LEAST_IF_SUSPECT: f64 = 0.005;
-/// The rows that disagree are fewer than the others.
-const HALF: f64 = 0.5;
 /// Sets of rows without which the others are followed nearly as well, up to this factor, are told
 /// from each other by their size: the smallest is named.
 const NEARLY: f64 = 1.5;
@@ -140,13 +140,12 @@ fn compared(
     let kept = |n: usize| !rows.iter().any(|rows| rows.contains(&n));
     let others: Vec<usize> = (0..recording.len()).filter(|n| kept(*n)).collect();
     let of_others = |values: &[f64]| -> Vec<f64> { others.iter().map(|n| values[*n]).collect() };
-    let share = 1.0 - others.len() as f64 / recording.len() as f64;
     let least = match suspect.at_sight {
         true => LEAST_IF_SUSPECT,
         false if kept(0) => LEAST,
         false => LEAST_AT_START,
     };
-    if share == 0.0 || share > HALF {
+    if others.len() == recording.len() || !are_fewer(rows, recording.len()) {
         return None;
     }
     let output = of_others(&recording.output);

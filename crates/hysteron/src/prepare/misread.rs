@@ -5,7 +5,8 @@
 //! the ways to read them, only those that close the jumps are tried on a model.
 
 use crate::recording::Recording;
-use crate::series::spread::usual_span;
+use crate::series::noise::median_of;
+use crate::series::spread::{range, usual_span};
 use std::ops::Range;
 
 /// Of the jumps at the ends of the rows, at most this share is left.
@@ -59,6 +60,21 @@ impl Reading {
             }
         }
         read
+    }
+
+    /// Whether the middle of rows that are read in this way lies in the range of the others, or so
+    /// far beside it as that is wide. The ends of the rows may be among the others.
+    pub(super) fn is_like_the_others(self, recording: &Recording, rows: &[Range<usize>]) -> bool {
+        let read = self.of(recording, rows);
+        let is_own = |n: usize| rows.iter().any(|rows| rows.contains(&n));
+        let is_near = |values: &[f64]| {
+            let part = |own| (0..values.len()).filter(move |n| is_own(*n) == own);
+            let part = |own| part(own).map(|n| values[n]).collect::<Vec<_>>();
+            let (low, high) = range(&part(false));
+            let width = high - low;
+            (low - width..=high + width).contains(&median_of(part(true)))
+        };
+        is_near(&read.input) && is_near(&read.output)
     }
 
     /// In words, of series with these names.

@@ -14,6 +14,8 @@ use std::ops::Range;
 /// suspect.
 pub(super) const BLOCKS: usize = 40;
 pub(super) const SUSPECT: f64 = 4.0;
+/// The rows that disagree are fewer than the others.
+pub(super) const HALF: f64 = 0.5;
 /// Blocks that disagree may have so many between them where they agree by chance.
 const BETWEEN: [usize; 3] = [0, 2, 5];
 /// Rounds of the concentration, and number of windows without which it begins. Each is of this
@@ -96,7 +98,9 @@ pub(super) fn of_the_series(
     let mut found: Vec<Suspect> = parts.map(Suspect::unseen).collect();
     let misread = readings(recording, cuts).into_iter();
     found.extend(misread.map(|(rows, way)| Suspect::seen(rows, Some(way))));
-    let parts = between(cuts, len).into_iter();
+    let parts = between(cuts, len)
+        .into_iter()
+        .filter(|rows| are_fewer(rows, len));
     found.extend(parts.filter_map(|rows| slipped(recording, rows)));
     let channels = [&recording.input, &recording.output].into_iter();
     found.extend(channels.map(|values| still(values)).flat_map(|runs| {
@@ -112,17 +116,29 @@ pub(super) fn of_the_series(
 /// moved to near `cuts`.
 pub(super) fn of_models(recording: &Recording, cuts: &[usize], predicted: &[f64]) -> Vec<Suspect> {
     let starts = [Some(predicted.to_vec()), without_a_window(recording)];
-    let found = starts
-        .into_iter()
-        .flatten()
-        .flat_map(|start| concentrated(recording, start));
-    found
-        .flat_map(|rows| [snapped(&rows, cuts, recording.len()), rows])
-        .flat_map(|rows| {
-            let exchanged = Suspect::seen(vec![rows.clone()], Some(Reading::Exchanged));
-            [exchanged, Suspect::unseen(vec![rows])]
-        })
-        .collect()
+    let mut known = Vec::new();
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for start in starts.into_iter().flatten() {
+        for rows in concentrated(recording, start, &mut known) {
+            for rows in [snapped(&rows, cuts, recording.len()), rows] {
+                if !found.contains(&rows) {
+                    found.push(rows);
+                }
+            }
+        }
+    }
+    let suspects = found.into_iter().map(|rows| vec![rows]).flat_map(|rows| {
+        let exchanged = Reading::Exchanged;
+        let may_be = exchanged.is_like_the_others(recording, &rows);
+        let exchanged = may_be.then(|| Suspect::seen(rows.clone(), Some(exchanged)));
+        exchanged.into_iter().chain([Suspect::unseen(rows)])
+    });
+    suspects.collect()
+}
+
+/// Whether rows are few enough of `len` to be those that disagree.
+pub(super) fn are_fewer(rows: &[Range<usize>], len: usize) -> bool {
+    rows.iter().map(Range::len).sum::<usize>() as f64 <= HALF * len as f64
 }
 
 /// The stretches between the samples `cuts`: each alone, and every other one.
@@ -186,14 +202,18 @@ fn without_a_window(recording: &Recording) -> Option<Vec<f64>> {
 }
 
 /// The longest stretch of blocks on which a model errs many times more than usual, round by round:
-/// a first model, then one of the blocks on which the model before erred least.
-fn concentrated(recording: &Recording, mut predicted: Vec<f64>) -> Vec<Range<usize>> {
+/// a first model, then one of the blocks on which the model before erred least. It ends at blocks
+/// that are `known`: from there, all goes on as it did before.
+fn concentrated(
+    recording: &Recording,
+    mut predicted: Vec<f64>,
+    known: &mut Vec<Vec<usize>>,
+) -> Vec<Range<usize>> {
     let bounds: Vec<usize> = (0..=BLOCKS).map(|n| n * recording.len() / BLOCKS).collect();
     let block = |n: usize| bounds[n]..bounds[n + 1];
     let keep = ((1.0 - WINDOW) * BLOCKS as f64).ceil() as usize;
     let mut found: Vec<Range<usize>> = Vec::new();
-    let mut least: Vec<usize> = Vec::new();
-    for _ in 0..ROUNDS {
+    for round in 1..=ROUNDS {
         let error = |n: usize| mean(apart(&recording.output[block(n)], &predicted[block(n)]));
         let errors: Vec<f64> = (0..BLOCKS).map(error).collect();
         let suspect = SUSPECT * median_of(errors.clone());
@@ -208,15 +228,15 @@ fn concentrated(recording: &Recording, mut predicted: Vec<f64>) -> Vec<Range<usi
         order.sort_by(|a, b| errors[*a].total_cmp(&errors[*b]));
         order.truncate(keep);
         order.sort_unstable();
-        if order == least {
+        if round == ROUNDS || known.contains(&order) {
             break;
         }
-        least = order;
-        let kept = |n: usize| least.iter().any(|own| block(*own).contains(&n));
+        let kept = |n: usize| order.iter().any(|own| block(*own).contains(&n));
         match from_kept(recording, &kept) {
             Some(of_the_least) => predicted = of_the_least,
             None => break,
         }
+        known.push(order);
     }
     found
 }
