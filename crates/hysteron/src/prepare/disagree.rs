@@ -8,6 +8,7 @@
 
 use super::explained::{explained, may_stand_still, stands_still};
 use super::judge::{apart, from_kept, mean, unseen};
+use super::misread::may_be_exchanged;
 use super::suspects::{
     HALF, Suspect, all_jumps, are_fewer, of_models, of_the_series, with_that_of_the_error,
 };
@@ -34,6 +35,11 @@ const FOLLOWED: f64 = 0.02;
 /// Rows in the middle that raise the error on the others by this factor need no explanation: no
 /// material does that.
 const CLEAR: f64 = 20.0;
+/// Stretches of rows that may harm are looked for with so many ends. There the range of the others
+/// is that of so many rows, and this share of the harm is enough.
+const PIECES: usize = 20;
+const SEEN_OF_RANGE: usize = 400;
+const ALMOST: f64 = 0.9;
 /// In a longer recording, rows are taken from which the shape of the loops can be seen.
 const ROWS: usize = 10_000;
 
@@ -96,8 +102,12 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     let cuts = with_that_of_the_error(&jumps, recording, &all);
     let seen = of_the_series(recording, &jumps, &cuts).into_iter();
     let seen = seen.filter_map(compared_with);
-    let concentrated = of_models(recording, &cuts, &all).into_iter();
+    let concentrated = match one_stretch_may_harm(recording, &all) {
+        true => of_models(recording, &cuts, &all),
+        false => Vec::new(),
+    };
     let concentrated = concentrated
+        .into_iter()
         .filter_map(compared_with)
         .filter(|found| found.without <= FOLLOWED * span)
         .filter(|found| {
@@ -122,6 +132,35 @@ fn found(recording: &Recording) -> Option<Disagreement> {
         &unseen(recording, &|_| true)?,
         unseen,
     )
+}
+
+/// Whether there is a stretch of rows beside which the model of `all` rows errs by nearly as much as
+/// it has to where that stretch harms it: without, no stretch needs a model of the others.
+fn one_stretch_may_harm(recording: &Recording, all: &[f64]) -> bool {
+    let len = recording.len();
+    let mut sum = 0.0;
+    let off = apart(&recording.output, all).map(|off| {
+        sum += off;
+        sum
+    });
+    let sums: Vec<f64> = [0.0].into_iter().chain(off).collect();
+    let bound = |piece: usize| piece * len / PIECES;
+    let stretches = (0..PIECES).flat_map(|from| (from + 1..=PIECES).map(move |to| (from, to)));
+    let mut stretches = stretches.map(|(from, to)| bound(from)..bound(to));
+    let every = len.div_ceil(SEEN_OF_RANGE);
+    let least = match may_be_exchanged(recording) {
+        true => LEAST_IF_SUSPECT,
+        false => LEAST,
+    };
+    stretches.any(|rows| {
+        let others = len - rows.len();
+        let off = (sums[len] - sums[rows.end] + sums[rows.start]) / others as f64;
+        let range = || {
+            let others = (0..len).step_by(every).filter(|n| !rows.contains(n));
+            usual_span(&others.map(|n| recording.output[n]).collect::<Vec<_>>())
+        };
+        are_fewer(std::slice::from_ref(&rows), len) && off > ALMOST * least * range()
+    })
 }
 
 /// What models of the samples that are kept predict.

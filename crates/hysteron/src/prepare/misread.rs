@@ -62,17 +62,14 @@ impl Reading {
         read
     }
 
-    /// Whether the middle of rows that are read in this way lies in the range of the others, or so
-    /// far beside it as that is wide. The ends of the rows may be among the others.
+    /// Whether rows that are read in this way lie near the others. Their ends may be among these.
     pub(super) fn is_like_the_others(self, recording: &Recording, rows: &[Range<usize>]) -> bool {
         let read = self.of(recording, rows);
         let is_own = |n: usize| rows.iter().any(|rows| rows.contains(&n));
         let is_near = |values: &[f64]| {
             let part = |own| (0..values.len()).filter(move |n| is_own(*n) == own);
             let part = |own| part(own).map(|n| values[n]).collect::<Vec<_>>();
-            let (low, high) = range(&part(false));
-            let width = high - low;
-            (low - width..=high + width).contains(&median_of(part(true)))
+            lies_near(&part(true), &part(false))
         };
         is_near(&read.input) && is_near(&read.output)
     }
@@ -92,6 +89,19 @@ impl Reading {
             Self::Output(gain, offset) => line(output, (gain, offset)),
         }
     }
+}
+
+/// Whether the middle of values lies in the range of others, or so far beside it as that is wide.
+fn lies_near(values: &[f64], others: &[f64]) -> bool {
+    let (low, high) = range(others);
+    let width = high - low;
+    (low - width..=high + width).contains(&median_of(values.to_vec()))
+}
+
+/// Whether rows whose columns are exchanged may err little: input and output have like values.
+pub(super) fn may_be_exchanged(recording: &Recording) -> bool {
+    let (input, output) = (&recording.input, &recording.output);
+    lies_near(input, output) && lies_near(output, input)
 }
 
 /// Rows, and a way to read them that closes the jumps at their ends. They lie between the samples
