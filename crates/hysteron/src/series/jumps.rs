@@ -18,17 +18,29 @@ const PAIR: f64 = 0.5;
 const LONGEST: usize = 50;
 const BURST: std::ops::RangeInclusive<usize> = 8..=100;
 
-/// The largest step that is no jump; `None` for a series that moves in seldom steps, where a jump is
-/// the usual way.
-fn largest_step(values: &[f64]) -> Option<(f64, f64)> {
+/// What a series does from one sample to the next.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    /// All but the largest steps are no larger.
+    usual: f64,
+    /// The largest step that is no jump.
+    largest: f64,
+}
+
+/// The steps of a series; `None` for one that moves in seldom steps, where a jump is the usual way.
+pub(crate) fn steps(values: &[f64]) -> Option<Steps> {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let usual = quantile(steps, 1.0 - LARGE);
-    (usual > 0.0).then(|| (usual, (TIMES * usual).max(SMALLEST * usual_span(values))))
+    let largest = || (TIMES * usual).max(SMALLEST * usual_span(values));
+    (usual > 0.0).then(|| Steps {
+        usual,
+        largest: largest(),
+    })
 }
 
 /// The samples before which the series jumps.
 pub(crate) fn jumps(values: &[f64]) -> Vec<usize> {
-    let Some((_, largest)) = largest_step(values) else {
+    let Some(Steps { largest, .. }) = steps(values) else {
         return Vec::new();
     };
     let jump = |n: &usize| (values[*n] - values[n - 1]).abs() > largest;
@@ -36,9 +48,9 @@ pub(crate) fn jumps(values: &[f64]) -> Vec<usize> {
 }
 
 /// Replaces bursts by linear interpolation between their neighbours, in place. Returns the indices
-/// of the samples replaced.
-pub(crate) fn remove_bursts(values: &mut [f64]) -> Vec<usize> {
-    let Some((usual, largest)) = largest_step(values) else {
+/// of the samples replaced. `usual` has the [`steps`] of this series, or of one like it.
+pub(crate) fn remove_bursts(values: &mut [f64], usual: Option<Steps>) -> Vec<usize> {
+    let Some(Steps { usual, largest }) = usual else {
         return Vec::new();
     };
     let longest = (values.len() / LONGEST).clamp(*BURST.start(), *BURST.end());
@@ -90,7 +102,8 @@ mod tests {
             .clone()
             .for_each(|n| read[n] += if n % 2 == 0 { 70.0 } else { -70.0 });
         let expected: Vec<usize> = up.chain(dropout).chain(mixed).collect();
-        assert_eq!(remove_bursts(&mut read), expected);
+        let usual = steps(&read);
+        assert_eq!(remove_bursts(&mut read, usual), expected);
         for (n, (found, truth)) in read.iter().zip(&clean).enumerate() {
             // Over 30 samples, 0.6 rad, the sagitta of the sine is 40 (1 − cos 0.3).
             assert!((found - truth).abs() < 2.0, "{n}: {found} for {truth}");
@@ -101,14 +114,16 @@ mod tests {
             .collect();
         let mut read = steep.clone();
         read[100..112].iter_mut().for_each(|x| *x += 18.0);
-        assert_eq!(remove_bursts(&mut read), (100..112).collect::<Vec<_>>());
+        let expected: Vec<usize> = (100..112).collect();
+        let usual = steps(&read);
+        assert_eq!(remove_bursts(&mut read, usual), expected);
         assert_eq!(read, steep);
         let square: Vec<f64> = (0..300).map(|n| f64::from(n / 10 % 2)).collect();
         let mut cut = clean.clone();
         cut[1000..].iter_mut().for_each(|x| *x += 100.0);
         for series in [clean, square, cut, vec![1.0; 9], vec![]] {
             let mut after = series.clone();
-            assert_eq!(remove_bursts(&mut after), [0; 0]);
+            assert_eq!(remove_bursts(&mut after, steps(&series)), [0; 0]);
             assert_eq!(after, series);
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::series::clear_branches;
 use crate::series::coarse::goes_by_jumps;
-use crate::series::jumps::remove_bursts;
+use crate::series::jumps::{remove_bursts, steps};
 use crate::series::noise::median_of;
 use crate::series::spikes;
 use crate::series::spread::{range, usual_span};
@@ -179,18 +179,35 @@ fn replaced(
             found.extend(run);
         }
     }
-    for _ in 0..if runs { ROUNDS } else { 1 } {
-        let before = found.len();
-        if runs {
-            found.extend(remove_bursts(values));
+    match runs {
+        true => {
+            // Many wrong readings make many large steps, and among those the first step of a burst
+            // may look usual. What is usual is seen once they are gone.
+            let mut mended = values.to_vec();
+            if !rounds(&mut mended, None, deviations).is_empty() {
+                found.extend(rounds(values, Some(&mended), deviations));
+            }
         }
+        false => found.extend(spikes::remove(values, deviations)),
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Puts lines in place of bursts and spikes, round by round. Returns their samples. What a usual
+/// step is, a `mended` series tells, if there is one.
+fn rounds(values: &mut [f64], mended: Option<&[f64]>, deviations: f64) -> Vec<usize> {
+    let mut found = Vec::new();
+    for _ in 0..ROUNDS {
+        let before = found.len();
+        let usual = steps(mended.unwrap_or(values));
+        found.extend(remove_bursts(values, usual));
         found.extend(spikes::remove(values, deviations));
         if found.len() == before {
             break;
         }
     }
-    found.sort_unstable();
-    found.dedup();
     found
 }
 
@@ -274,6 +291,22 @@ mod tests {
         for rests in [off, steps, coarse, vec![1.0; 9], vec![]] {
             assert_eq!(held(&rests, Some(&follower[..rests.len()])), []);
         }
+    }
+
+    #[test]
+    fn among_many_wrong_readings_a_burst_is_found_from_its_first_step_on() {
+        let noise = (0..).map(|n| if n % 2 == 0 { 1.0 } else { -1.0 });
+        let mut read: Vec<f64> = swings().iter().zip(noise).map(|(x, e)| x + e).collect();
+        let spikes: Vec<usize> = (0..40).map(|k| 45 * k + 20).collect();
+        spikes.iter().for_each(|n| read[*n] += 36.0);
+        // The first step of a burst is smaller than the next one, which is taken back at its end.
+        let burst = 405..415;
+        let off = |n: usize| [-134.0, 85.0, 219.0, 219.0, 219.0][(n - burst.start) / 2];
+        burst.clone().for_each(|n| read[n] += off(n));
+        let mut wrong: Vec<usize> = spikes.into_iter().chain(burst.clone()).collect();
+        wrong.sort_unstable();
+        wrong.dedup();
+        assert_eq!(super::wrong(&read, None, spikes::DEVIATIONS, true), wrong);
     }
 
     #[test]
