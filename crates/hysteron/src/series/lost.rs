@@ -148,51 +148,48 @@ pub(crate) fn wrong(
     deviations: f64,
     runs: bool,
 ) -> Vec<usize> {
-    replaced(&mut values.to_vec(), follower, deviations, runs)
+    replaced(values, follower, deviations, runs).0
 }
 
 /// The wrong readings of an input and of its output. Between set points both jump, and a short one
 /// is as right as a long one: none is wrong then.
 pub(crate) fn wrong_of_both(input: &[f64], output: &[f64]) -> [Vec<usize>; 2] {
-    let mut right = input.to_vec();
     let deviations = spikes::usual_deviations(input.len());
-    let found = replaced(&mut right, Some(output), deviations, true);
+    let (found, right) = replaced(input, Some(output), deviations, true);
     match goes_by_jumps(&right) {
         true => [Vec::new(), Vec::new()],
         false => [found, wrong(output, None, deviations, true)],
     }
 }
 
-/// As [`wrong`], with lines in place of these readings.
+/// As [`wrong`], and the series with lines in place of these readings.
 fn replaced(
-    values: &mut [f64],
+    read: &[f64],
     follower: Option<&[f64]>,
     deviations: f64,
     runs: bool,
-) -> Vec<usize> {
+) -> (Vec<usize>, Vec<f64>) {
+    let mut values = read.to_vec();
     let mut found: Vec<usize> = Vec::new();
     if runs {
-        let longest = half_a_branch(values);
-        let held = held(values, follower).into_iter();
-        for run in held.filter(|run| run.len() <= longest) {
-            fill(values, &run);
-            found.extend(run);
-        }
-    }
-    match runs {
-        true => {
+        let longest = half_a_branch(read);
+        let mut held = held(read, follower);
+        held.retain(|run| run.len() <= longest);
+        held.iter().for_each(|run| fill(&mut values, run));
+        if !rounds(&mut values, None, deviations).is_empty() {
             // Many wrong readings make many large steps, and among those the first step of a burst
             // may look usual. What is usual is seen once they are gone.
-            let mut mended = values.to_vec();
-            if !rounds(&mut mended, None, deviations).is_empty() {
-                found.extend(rounds(values, Some(&mended), deviations));
-            }
+            let mended = std::mem::replace(&mut values, read.to_vec());
+            held.iter().for_each(|run| fill(&mut values, run));
+            found = rounds(&mut values, Some(&mended), deviations);
         }
-        false => found.extend(spikes::remove(values, deviations)),
+        found.extend(held.into_iter().flatten());
+    } else {
+        found = spikes::remove(&mut values, deviations);
     }
     found.sort_unstable();
     found.dedup();
-    found
+    (found, values)
 }
 
 /// Puts lines in place of bursts and spikes, round by round. Returns their samples. What a usual
