@@ -9,8 +9,8 @@ use std::sync::Arc;
 /// With fewer columns than this all elements are held.
 pub(crate) const MANY: usize = 300;
 
-/// With fewer columns than this, one for each operator, a dense factor takes less time than a
-/// sparse one: it is that of the weights above zero alone.
+/// With fewer columns than this a dense factor takes less time than a sparse one: it is that of the
+/// weights above zero alone, and needs no search for a structure.
 const FACTORED: usize = 500;
 
 /// Elements of a matrix are kept sparse if they are less than this share of those of a dense factor.
@@ -43,7 +43,7 @@ impl Gram {
         let is_whole = whole.layout.whole_plane().is_some();
         // The structure is found only where it is likely to be small.
         let is_factored = is_sparse
-            && !(is_whole && columns < FACTORED)
+            && columns >= FACTORED
             && whole.pattern().is_some_and(|pattern| few(pattern.fill()));
         if !is_factored {
             check_dense(columns)?;
