@@ -32,8 +32,8 @@ This page is printed by
 `hysteron fit` as a whole process, with reading the file. The last argument is the largest number of
 samples. CPU is that of all threads, memory the highest of the process. By default there is a
 bootstrap up to 44 levels. Before each fit the command looks for rows that disagree with the others,
-by a small model of at most 10,000 rows, and by some fifteen more where a stretch of rows may do
-harm."""
+by a few small models of at most 10,000 rows, and by some fifteen more where a stretch of rows may
+do harm."""
 # Longer runs are given up.
 PATIENCE = 300
 

@@ -3,7 +3,7 @@
 
     python docs/fit-profile.py earlier=PROGRAM now=PROGRAM
 
-Prints Markdown. Linux, `perf` and programs with frame pointers and symbols are needed:
+Prints Markdown. It needs Linux, `perf`, NumPy, SciPy, and programs with frame pointers and symbols:
 
     RUSTFLAGS=-Cforce-frame-pointers=yes CARGO_PROFILE_RELEASE_STRIP=none cargo build --release
 """
@@ -26,11 +26,11 @@ This page is printed by
 
     python docs/fit-profile.py earlier=PROGRAM now=PROGRAM > docs/measured/fit-profile.md
 
-*Earlier* is the program before the start of a recording became a history (version 0.1.0), which ran
-the whole choice for each kind of start. Both have frame pointers, and run `hysteron fit` without an
-option on one thread, on the material of 20 levels of [the same of the command](fit-command.md).
-`perf` samples them 1000 times a second of CPU. A part is everything below its functions; the first
-one in this order counts."""
+*Earlier* is commit b69cf406, before the start of a recording became a history. It runs the choice
+for each kind of start. Both programs run `hysteron fit` without an option on one thread, on the
+material of 20 levels of [the same of the command](fit-command.md). `perf` samples them 1000 times a
+second of CPU. A sample counts for the first part in the table that any of its functions belongs to;
+in the second table, for the innermost function that has a row."""
 # What a part is, and functions below which all belongs to it.
 PARTS = [
     ("rows that disagree, advice", r"hysteron::prepare::|hysteron::advice"),
@@ -45,8 +45,8 @@ PARTS = [
 REST = "all else"
 # The same time by what is computed, from the innermost function outwards.
 KERNELS = [
+    ("sparse factors", r"corner_system|grid_factor|supernodal|simplicial|symbolic_cholesky|amd_"),
     ("dense algebra", r"^(faer|pulp|private_gemm|nano_gemm|gemm)|matmul|cholesky|triangular_solve"),
-    ("sparse factors", r"corner_system|grid_factor|supernodal|simplicial"),
     ("products and searches of the weights",
      r"weights::(solve|pivoting|nnls|nested|gram|corner_gram)"),
     ("sums over the samples", r"weights::(sparse|regressor|sums|rows|units|unit_sums|experiment)"),
@@ -80,7 +80,8 @@ def profile(program, data, folder):
     subprocess.run(["perf", "record", "-q", "-F", "1000", "--call-graph", "fp", "-o", record, *fit],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                    env={**os.environ, "RAYON_NUM_THREADS": "1"})
-    text = subprocess.run(["perf", "script", "-i", record], capture_output=True, text=True).stdout
+    text = subprocess.run(["perf", "script", "-i", record], capture_output=True, text=True,
+                          check=True).stdout
     parts, kernels = Counter(), Counter()
     for names in stacks(text):
         parts[first(names, PARTS)] += 1e-3

@@ -25,7 +25,7 @@ struct Case {
 impl Case {
     fn random(seed: u64) -> Self {
         let mut rng = rng(seed);
-        let method = METHODS[seed as usize % 2];
+        let method = METHODS[seed as usize % METHODS.len()];
         let operator = OPERATORS[seed as usize / 2 % 3];
         let most = if method == LEAST_SQUARES { 6 } else { 20 };
         let k = levels(&mut rng, most);

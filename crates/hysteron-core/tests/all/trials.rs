@@ -13,7 +13,7 @@ use rand::RngExt;
 fn rolled_back_and_realigned_it_goes_on_as_a_new_one() {
     for seed in 0..90 {
         let mut rng = rng(3000 + seed);
-        let method = METHODS[seed as usize % 2];
+        let method = METHODS[seed as usize % METHODS.len()];
         let operator = OPERATORS[seed as usize / 2 % 3];
         let k = rng.random_range(4..9);
         let plane = plane(&mut rng, k);
@@ -89,7 +89,7 @@ fn parameters_that_predict_better_become_the_good_ones() {
 fn at_rest_is_where_the_input_did_not_move() {
     for seed in 0..90 {
         let mut rng = rng(3200 + seed);
-        let method = METHODS[seed as usize % 2];
+        let method = METHODS[seed as usize % METHODS.len()];
         let k = 2 + seed as usize % 7;
         let plane = unit_plane(k);
         let guards = Adaptation {

@@ -130,7 +130,7 @@ const FROZEN: [fn(f64) -> f64; 3] = [|last| last, |_| 0.0, |last| -last];
 fn what_was_learned_from_a_frozen_output_is_undone() {
     let mut cycles = [vec![], vec![]];
     for seed in 0..600 {
-        let method = METHODS[seed as usize % 2];
+        let method = METHODS[seed as usize % METHODS.len()];
         let mut rig = Rig::new(seed, method);
         let samples = rig.rng.random_range(60..400);
         let plane = *rig.learner.model.plane();
@@ -194,7 +194,7 @@ fn what_was_learned_from_a_frozen_output_is_undone() {
 #[test]
 fn no_plant_that_changes_is_called_stuck() {
     for seed in 0..1200 {
-        let method = METHODS[seed as usize % 2];
+        let method = METHODS[seed as usize % METHODS.len()];
         let mut rig = Rig::new(seed, method);
         let samples = rig.rng.random_range(20..400);
         let plane = *rig.learner.model.plane();
@@ -238,7 +238,7 @@ fn no_plant_that_changes_is_called_stuck() {
 #[test]
 fn a_drive_that_rests_is_not_stuck() {
     for seed in 0..60 {
-        let mut rig = Rig::new(seed, METHODS[seed as usize % 2]);
+        let mut rig = Rig::new(seed, METHODS[seed as usize % METHODS.len()]);
         let plane = *rig.learner.model.plane();
         let inputs = loops(&mut rig.rng, &plane, 900, 200);
         let jitter = [0.0, 0.02, 0.2][seed as usize / 2 % 3] * plane.step();
@@ -256,7 +256,7 @@ fn a_drive_that_rests_is_not_stuck() {
 #[test]
 fn what_was_learned_at_a_frozen_input_is_undone() {
     for seed in 0..150 {
-        let mut rig = Rig::new(seed, METHODS[seed as usize % 2]);
+        let mut rig = Rig::new(seed, METHODS[seed as usize % METHODS.len()]);
         // Relays see levels alone: noise between two of them is motion to them, elsewhere none.
         if rig.learner.model.operator() == Operator::Relay {
             continue;
@@ -289,7 +289,7 @@ fn what_was_learned_at_a_frozen_input_is_undone() {
 #[test]
 fn learning_goes_on_where_the_channel_is_back() {
     for seed in 0..60 {
-        let mut rig = Rig::new(seed, METHODS[seed as usize % 2]);
+        let mut rig = Rig::new(seed, METHODS[seed as usize % METHODS.len()]);
         let plane = *rig.learner.model.plane();
         let inputs = loops(&mut rig.rng, &plane, 6000, 200);
         let mut last = Outcome::AtRest;

@@ -234,8 +234,12 @@ impl AdaptOptions {
                 least_squares(spread, correlation)
             }
             Learner::Drift => least_squares(SHARE, 0.0),
-            // The others learn otherwise.
-            _ => Method::Increments {
+            // The others do not estimate weights by themselves.
+            Learner::Increments
+            | Learner::Auto
+            | Learner::Fixed
+            | Learner::Refit
+            | Learner::Load => Method::Increments {
                 gain: self.gain.unwrap_or(GAIN),
                 span: self.span.unwrap_or(SPAN),
             },

@@ -35,11 +35,12 @@ const FOLLOWED: f64 = 0.02;
 /// Rows in the middle that raise the error on the others by this factor need no explanation: no
 /// material does that.
 const CLEAR: f64 = 20.0;
-/// Stretches of rows that may harm are looked for with so many ends. There the range of the others
-/// is that of so many rows, and this share of the harm is enough.
+/// Stretches are tried whose ends divide the rows into so many pieces. Of a stretch with other ends
+/// the one inside it leaves at least 0.5 / 0.6 of the error on the others. Their range is seen from so
+/// many rows.
 const PIECES: usize = 20;
+const ALMOST: f64 = 0.8;
 const SEEN_OF_RANGE: usize = 400;
-const ALMOST: f64 = 0.9;
 /// In a longer recording, rows are taken from which the shape of the loops can be seen.
 const ROWS: usize = 10_000;
 
@@ -95,7 +96,7 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     // is so where the outputs of many rows are wrong, and then the series jump, or the errors are
     // large.
     let error = mean(apart(&recording.output, &all));
-    if jumps.is_empty() && error <= 0.5 * HALF * LEAST * span {
+    if jumps.is_empty() && error <= HALF * LEAST_IF_SUSPECT * span {
         return None;
     }
     let compared_with = |suspect| compared(recording, suspect, FACTOR, &all, from_kept);
@@ -134,8 +135,8 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     )
 }
 
-/// Whether there is a stretch of rows beside which the model of `all` rows errs by nearly as much as
-/// it has to where that stretch harms it: without, no stretch needs a model of the others.
+/// Whether the model of `all` rows errs, outside some stretch of at most half of them, by nearly what
+/// [`compared`] asks for.
 fn one_stretch_may_harm(recording: &Recording, all: &[f64]) -> bool {
     let len = recording.len();
     let mut sum = 0.0;
@@ -145,21 +146,23 @@ fn one_stretch_may_harm(recording: &Recording, all: &[f64]) -> bool {
     });
     let sums: Vec<f64> = [0.0].into_iter().chain(off).collect();
     let bound = |piece: usize| piece * len / PIECES;
-    let stretches = (0..PIECES).flat_map(|from| (from + 1..=PIECES).map(move |to| (from, to)));
-    let mut stretches = stretches.map(|(from, to)| bound(from)..bound(to));
-    let every = len.div_ceil(SEEN_OF_RANGE);
+    let stretches = (0..=PIECES).flat_map(|from| (from..=PIECES).map(move |to| (from, to)));
+    let mut stretches = stretches
+        .map(|(from, to)| bound(from)..bound(to))
+        .filter(|rows| are_fewer(std::slice::from_ref(rows), len));
     let least = match may_be_exchanged(recording) {
         true => LEAST_IF_SUSPECT,
         false => LEAST,
     };
+    let span = usual_span(&recording.output);
+    let every = len.div_ceil(SEEN_OF_RANGE);
     stretches.any(|rows| {
-        let others = len - rows.len();
-        let off = (sums[len] - sums[rows.end] + sums[rows.start]) / others as f64;
-        let range = || {
+        let off = (sums[len] - sums[rows.end] + sums[rows.start]) / (len - rows.len()) as f64;
+        let of_others = || {
             let others = (0..len).step_by(every).filter(|n| !rows.contains(n));
             usual_span(&others.map(|n| recording.output[n]).collect::<Vec<_>>())
         };
-        are_fewer(std::slice::from_ref(&rows), len) && off > ALMOST * least * range()
+        off > ALMOST * least * span || off > ALMOST * least * of_others()
     })
 }
 

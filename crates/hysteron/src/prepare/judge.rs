@@ -209,11 +209,12 @@ pub(super) fn from_kept(recording: &Recording, kept: &dyn Fn(usize) -> bool) -> 
     if recording.len() < BLOCKS * SHORTEST {
         return None;
     }
+    let recording = with_its_load(recording);
     let options = FitOptions {
-        sign: clear_sign(recording, |n| kept[n] > 0.0),
+        sign: clear_sign(&recording, |n| kept[n] > 0.0),
         ..small()
     };
-    predicted_from(&with_its_load(recording), &options, &kept).ok()
+    predicted_from(&recording, &options, &kept).ok()
 }
 
 /// The group of blocks that a sample of `len` belongs to.
@@ -230,17 +231,21 @@ fn without_folds(
     if recording.len() < BLOCKS * SHORTEST {
         return None;
     }
+    let recording = with_its_load(recording);
     let options = FitOptions {
         range,
-        sign: clear_sign(recording, |n| fold[n].is_some()),
+        sign: clear_sign(&recording, |n| fold[n].is_some()),
         ..small()
     };
-    predicted_without(&with_its_load(recording), &options, fold).ok()
+    predicted_without(&recording, &options, fold).ok()
 }
 
-/// The sign of the model of the samples that are `kept`, where their correlation leaves no doubt: a
-/// model of the other sign would have no weights. It saves a fit.
+/// The sign of the model of the samples that are `kept`, where their correlation is clear: that of the
+/// other sign need not be tried. With a load the output may follow that.
 fn clear_sign(recording: &Recording, kept: impl Fn(usize) -> bool) -> Option<Sign> {
+    if recording.load.is_some() {
+        return None;
+    }
     let kept = || (0..recording.len()).filter(|n| kept(*n));
     let of = |values: &[f64]| mean_and_deviation(&kept().map(|n| values[n]).collect::<Vec<_>>());
     let ((x, x_deviation), (y, y_deviation)) = (of(&recording.input), of(&recording.output));

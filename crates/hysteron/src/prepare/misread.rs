@@ -62,18 +62,6 @@ impl Reading {
         read
     }
 
-    /// Whether rows that are read in this way lie near the others. Their ends may be among these.
-    pub(super) fn is_like_the_others(self, recording: &Recording, rows: &[Range<usize>]) -> bool {
-        let read = self.of(recording, rows);
-        let is_own = |n: usize| rows.iter().any(|rows| rows.contains(&n));
-        let is_near = |values: &[f64]| {
-            let part = |own| (0..values.len()).filter(move |n| is_own(*n) == own);
-            let part = |own| part(own).map(|n| values[n]).collect::<Vec<_>>();
-            lies_near(&part(true), &part(false))
-        };
-        is_near(&read.input) && is_near(&read.output)
-    }
-
     /// In words, of series with these names.
     pub(super) fn text(self, input: &str, output: &str) -> String {
         let line = |series: &str, (gain, offset): (f64, f64)| match (gain, offset) {
@@ -91,7 +79,7 @@ impl Reading {
     }
 }
 
-/// Whether the middle of values lies in the range of others, or so far beside it as that is wide.
+/// Whether the middle of values lies in the range of others, or beside it by at most its width.
 fn lies_near(values: &[f64], others: &[f64]) -> bool {
     let (low, high) = range(others);
     let width = high - low;
@@ -102,6 +90,14 @@ fn lies_near(values: &[f64], others: &[f64]) -> bool {
 pub(super) fn may_be_exchanged(recording: &Recording) -> bool {
     let (input, output) = (&recording.input, &recording.output);
     lies_near(input, output) && lies_near(output, input)
+}
+
+/// Whether rows lie near the others with their columns exchanged.
+pub(super) fn fits_exchanged(recording: &Recording, rows: &Range<usize>) -> bool {
+    let (input, output) = (&recording.input, &recording.output);
+    let others = |values: &[f64]| [&values[..rows.start], &values[rows.end..]].concat();
+    lies_near(&output[rows.clone()], &others(input))
+        && lies_near(&input[rows.clone()], &others(output))
 }
 
 /// Rows, and a way to read them that closes the jumps at their ends. They lie between the samples

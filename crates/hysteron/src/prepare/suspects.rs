@@ -3,7 +3,7 @@
 //! model errs that was fitted to those blocks on which the model before erred least.
 
 use super::judge::{apart, from_kept, mean};
-use super::misread::{JUMPS, Reading, readings};
+use super::misread::{JUMPS, Reading, fits_exchanged, readings};
 use crate::recording::Recording;
 use crate::series::frozen::still;
 use crate::series::jumps::jumps;
@@ -128,9 +128,8 @@ pub(super) fn of_models(recording: &Recording, cuts: &[usize], predicted: &[f64]
         }
     }
     let suspects = found.into_iter().map(|rows| vec![rows]).flat_map(|rows| {
-        let exchanged = Reading::Exchanged;
-        let may_be = exchanged.is_like_the_others(recording, &rows);
-        let exchanged = may_be.then(|| Suspect::seen(rows.clone(), Some(exchanged)));
+        let exchanged = || Suspect::seen(rows.clone(), Some(Reading::Exchanged));
+        let exchanged = fits_exchanged(recording, &rows[0]).then(exchanged);
         exchanged.into_iter().chain([Suspect::unseen(rows)])
     });
     suspects.collect()
@@ -141,7 +140,8 @@ pub(super) fn are_fewer(rows: &[Range<usize>], len: usize) -> bool {
     rows.iter().map(Range::len).sum::<usize>() as f64 <= HALF * len as f64
 }
 
-/// The stretches between the samples `cuts`: each alone, and every other one.
+/// The stretches between the samples `cuts`: each alone, and every other one; those that are fewer
+/// than the others.
 fn between(cuts: &[usize], len: usize) -> Vec<Vec<Range<usize>>> {
     let mut sets = Vec::new();
     if (1..=JUMPS).contains(&cuts.len()) {
@@ -155,6 +155,7 @@ fn between(cuts: &[usize], len: usize) -> Vec<Vec<Range<usize>>> {
         }
         sets.extend(stretches.into_iter().map(|stretch| vec![stretch]));
     }
+    sets.retain(|rows| are_fewer(rows, len));
     sets
 }
 
@@ -203,7 +204,7 @@ fn without_a_window(recording: &Recording) -> Option<Vec<f64>> {
 
 /// The longest stretch of blocks on which a model errs many times more than usual, round by round:
 /// a first model, then one of the blocks on which the model before erred least. It ends at blocks
-/// that are `known`: from there, all goes on as it did before.
+/// that are `known`: what comes after them was looked at before.
 fn concentrated(
     recording: &Recording,
     mut predicted: Vec<f64>,

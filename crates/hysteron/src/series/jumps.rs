@@ -31,10 +31,9 @@ pub(crate) struct Steps {
 pub(crate) fn steps(values: &[f64]) -> Option<Steps> {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let usual = quantile(steps, 1.0 - LARGE);
-    let largest = || (TIMES * usual).max(SMALLEST * usual_span(values));
     (usual > 0.0).then(|| Steps {
         usual,
-        largest: largest(),
+        largest: (TIMES * usual).max(SMALLEST * usual_span(values)),
     })
 }
 
@@ -48,11 +47,9 @@ pub(crate) fn jumps(values: &[f64]) -> Vec<usize> {
 }
 
 /// Replaces bursts by linear interpolation between their neighbours, in place. Returns the indices
-/// of the samples replaced. `usual` has the [`steps`] of this series, or of one like it.
-pub(crate) fn remove_bursts(values: &mut [f64], usual: Option<Steps>) -> Vec<usize> {
-    let Some(Steps { usual, largest }) = usual else {
-        return Vec::new();
-    };
+/// of the samples replaced. The [`steps`] are those of this series, or of one like it.
+pub(crate) fn remove_bursts(values: &mut [f64], steps: Steps) -> Vec<usize> {
+    let Steps { usual, largest } = steps;
     let longest = (values.len() / LONGEST).clamp(*BURST.start(), *BURST.end());
     let mut removed = Vec::new();
     let mut n = 1;
@@ -87,6 +84,7 @@ pub(crate) fn remove_bursts(values: &mut [f64], usual: Option<Steps>) -> Vec<usi
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::series::test_series::swings;
@@ -102,8 +100,8 @@ mod tests {
             .clone()
             .for_each(|n| read[n] += if n % 2 == 0 { 70.0 } else { -70.0 });
         let expected: Vec<usize> = up.chain(dropout).chain(mixed).collect();
-        let usual = steps(&read);
-        assert_eq!(remove_bursts(&mut read, usual), expected);
+        let of_read = steps(&read).unwrap();
+        assert_eq!(remove_bursts(&mut read, of_read), expected);
         for (n, (found, truth)) in read.iter().zip(&clean).enumerate() {
             // Over 30 samples, 0.6 rad, the sagitta of the sine is 40 (1 − cos 0.3).
             assert!((found - truth).abs() < 2.0, "{n}: {found} for {truth}");
@@ -115,16 +113,18 @@ mod tests {
         let mut read = steep.clone();
         read[100..112].iter_mut().for_each(|x| *x += 18.0);
         let expected: Vec<usize> = (100..112).collect();
-        let usual = steps(&read);
-        assert_eq!(remove_bursts(&mut read, usual), expected);
+        let of_read = steps(&read).unwrap();
+        assert_eq!(remove_bursts(&mut read, of_read), expected);
         assert_eq!(read, steep);
         let square: Vec<f64> = (0..300).map(|n| f64::from(n / 10 % 2)).collect();
         let mut cut = clean.clone();
         cut[1000..].iter_mut().for_each(|x| *x += 100.0);
         for series in [clean, square, cut, vec![1.0; 9], vec![]] {
             let mut after = series.clone();
-            assert_eq!(remove_bursts(&mut after, steps(&series)), [0; 0]);
-            assert_eq!(after, series);
+            if let Some(steps) = steps(&series) {
+                assert_eq!(remove_bursts(&mut after, steps), [0; 0]);
+                assert_eq!(after, series);
+            }
         }
     }
 

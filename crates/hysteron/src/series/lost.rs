@@ -3,7 +3,7 @@
 
 use crate::series::clear_branches;
 use crate::series::coarse::goes_by_jumps;
-use crate::series::jumps::{remove_bursts, steps};
+use crate::series::jumps::{Steps, remove_bursts, steps};
 use crate::series::noise::median_of;
 use crate::series::spikes;
 use crate::series::spread::{range, usual_span};
@@ -181,7 +181,7 @@ fn replaced(
             // may look usual. What is usual is seen once they are gone.
             let mended = std::mem::replace(&mut values, read.to_vec());
             held.iter().for_each(|run| fill(&mut values, run));
-            found = rounds(&mut values, Some(&mended), deviations);
+            found = rounds(&mut values, steps(&mended), deviations);
         }
         found.extend(held.into_iter().flatten());
     } else {
@@ -192,14 +192,15 @@ fn replaced(
     (found, values)
 }
 
-/// Puts lines in place of bursts and spikes, round by round. Returns their samples. What a usual
-/// step is, a `mended` series tells, if there is one.
-fn rounds(values: &mut [f64], mended: Option<&[f64]>, deviations: f64) -> Vec<usize> {
+/// Puts lines in place of bursts and spikes, round by round. Returns their samples. The `usual` steps
+/// are those of the series in each round where they are not known.
+fn rounds(values: &mut [f64], usual: Option<Steps>, deviations: f64) -> Vec<usize> {
     let mut found = Vec::new();
     for _ in 0..ROUNDS {
         let before = found.len();
-        let usual = steps(mended.unwrap_or(values));
-        found.extend(remove_bursts(values, usual));
+        if let Some(steps) = usual.or_else(|| steps(values)) {
+            found.extend(remove_bursts(values, steps));
+        }
         found.extend(spikes::remove(values, deviations));
         if found.len() == before {
             break;

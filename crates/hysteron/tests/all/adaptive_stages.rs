@@ -95,11 +95,13 @@ fn a_model_that_learns_nothing_is_the_model_bit_for_bit() {
         let model = model(&mut rng);
         let mut state = model.off();
         let mut fixed = by(Learner::Fixed).adaptive(&model).unwrap();
-        let mut frozen = by(LEARNERS[seed as usize % 5]).adaptive(&model).unwrap();
+        let mut frozen = by(LEARNERS[seed as usize % LEARNERS.len()])
+            .adaptive(&model)
+            .unwrap();
         frozen.freeze(true);
         // A refit has weights of other states, `drift` a sum of sets, `auto` a mean: they round.
         let exact = matches!(
-            LEARNERS[seed as usize % 5],
+            LEARNERS[seed as usize % LEARNERS.len()],
             Learner::LeastSquares | Learner::Increments
         );
         for sample in walk(&mut rng, &model, 200) {
@@ -126,7 +128,7 @@ fn what_learns_from_the_model_itself_stays_at_the_model() {
     for seed in 0..200 {
         let mut rng = ChaCha8Rng::seed_from_u64(1000 + seed);
         let model = model(&mut rng);
-        let learner = LEARNERS[seed as usize % 5];
+        let learner = LEARNERS[seed as usize % LEARNERS.len()];
         let mut state = model.off();
         let mut adaptive = by(learner).adaptive(&model).unwrap();
         let (off, on) = model.output_range();

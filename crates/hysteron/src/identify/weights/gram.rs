@@ -39,8 +39,6 @@ impl Gram {
         let dense = (columns as f64).powi(2) / 2.0;
         let few = |count: usize| (count as f64) < SPARSE * dense && 8 * count as u128 <= MOST_BYTES;
         let is_sparse = few(whole.places.len());
-        // All elements of a whole plane are found at once, and need not be held.
-        let is_whole = whole.layout.whole_plane().is_some();
         // The structure is found only where it is likely to be small.
         let is_factored = is_sparse
             && columns >= FACTORED
@@ -53,7 +51,8 @@ impl Gram {
             if is_factored {
                 gram.share_pattern(&whole);
             }
-            match is_factored || (is_sparse && is_whole) {
+            // All elements of a whole plane are found at once, and need not be held.
+            match is_factored || (is_sparse && whole.layout.whole_plane().is_some()) {
                 true => Self::Corners(Arc::new(gram)),
                 false => Self::Dense(gram.dense()),
             }
