@@ -13,6 +13,10 @@ use std::cmp::Ordering;
 /// its own choice.
 pub(super) const HARM: f64 = 1.3;
 
+/// In a fleet of several kinds, one that is served best by so few levels chooses by itself as well:
+/// that takes no longer than to try the kinds, whose signs tell them apart less surely.
+const FAST: usize = 20;
+
 /// A model with the choice of a kind.
 struct Shared {
     kind: usize,
@@ -88,7 +92,9 @@ impl Ready {
                 .min_by(Shared::order);
         }
         progress.tell("fits", f64::NAN)?;
-        let alone = match best.as_ref().is_some_and(usual) {
+        let chooses_fast = |best: &Shared| shared.kinds[best.kind].chosen.levels <= FAST;
+        let is_sure = |best: &Shared| usual(best) && (single || !chooses_fast(best));
+        let alone = match best.as_ref().is_some_and(is_sure) {
             true => None,
             false => Some(self.fitted(&options.fit.testing(), options, progress)),
         };
