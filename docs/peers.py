@@ -34,7 +34,7 @@ nothing else is said; memory is the most of a process. An aim in bold is missed.
 there is none.
 
 Commands that fit look first for rows that disagree with the others. In a fleet without a choice
-that takes most of the time: the small model of an actuator, whose start it has to find, takes five
+that takes most of the time: the small model of an actuator, whose start it has to find, takes three
 times as long as its fit. `inspect` looks for such rows, too.
 
 | what | ours | peer | limit | ratio | aim |
