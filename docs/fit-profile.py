@@ -28,7 +28,7 @@ This page is printed by
 
 *Earlier* is commit b69cf406, before the start of a recording became a history. It runs the choice
 for each kind of start. Both programs run `hysteron fit` without an option on one thread, on the
-material of 20 levels of [the same of the command](fit-command.md). `perf` samples them 1000 times a
+material of 20 levels of [the page on the command](fit-command.md). `perf` samples them 1000 times a
 second of CPU. A sample counts for the first part in the table that any of its functions belongs to;
 in the second table, for the innermost function that has a row."""
 # What a part is, and functions below which all belongs to it.

@@ -58,7 +58,8 @@ pub struct FleetFitted {
 ///
 /// With [`FleetChoice::Pilots`](super::FleetChoice::Pilots), what the fit leaves to the data is
 /// chosen once, by pilots that are spread over the data, and each actuator is fitted with that. One
-/// that is predicted unusually badly or well, or whose loop is unusual, is fitted by itself as well.
+/// that is predicted unusually badly or well, or whose loop is unusual, is fitted by itself as well;
+/// so is, in a fleet of several kinds, one that at most 20 levels serve best.
 /// Where its own choice has an error on what is left out that is smaller by more than a factor of
 /// 1.3, it keeps that, and is named. A fleet of fewer than 24 has no pilots.
 ///

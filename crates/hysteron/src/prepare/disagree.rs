@@ -36,8 +36,8 @@ const FOLLOWED: f64 = 0.02;
 /// material does that.
 const CLEAR: f64 = 20.0;
 /// Stretches are tried whose ends divide the rows into so many pieces. Of a stretch with other ends
-/// the one inside it leaves at least 0.5 / 0.6 of the error on the others. Their range is seen from so
-/// many rows.
+/// the one inside it leaves at least 0.5 / 0.6 of the error on the others. Their range is seen from
+/// so many rows.
 const PIECES: usize = 20;
 const ALMOST: f64 = 0.8;
 const SEEN_OF_RANGE: usize = 400;
@@ -103,12 +103,11 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     let cuts = with_that_of_the_error(&jumps, recording, &all);
     let seen = of_the_series(recording, &jumps, &cuts).into_iter();
     let seen = seen.filter_map(compared_with);
-    let concentrated = match one_stretch_may_harm(recording, &all) {
-        true => of_models(recording, &cuts, &all),
-        false => Vec::new(),
-    };
+    let may_harm = one_stretch_may_harm(recording, &all, span);
+    let concentrated = may_harm.then(|| of_models(recording, &cuts, &all));
     let concentrated = concentrated
         .into_iter()
+        .flatten()
         .filter_map(compared_with)
         .filter(|found| found.without <= FOLLOWED * span)
         .filter(|found| {
@@ -135,14 +134,13 @@ fn found(recording: &Recording) -> Option<Disagreement> {
     )
 }
 
-/// Whether the model of `all` rows errs, outside some stretch of at most half of them, by nearly what
-/// [`compared`] asks for.
-fn one_stretch_may_harm(recording: &Recording, all: &[f64]) -> bool {
+/// Whether the model of `all` rows errs, outside some stretch of at most half of them, by nearly
+/// what [`compared`] asks for. `span` is the usual range of the output.
+fn one_stretch_may_harm(recording: &Recording, all: &[f64], span: f64) -> bool {
     let len = recording.len();
-    let mut sum = 0.0;
-    let off = apart(&recording.output, all).map(|off| {
-        sum += off;
-        sum
+    let off = apart(&recording.output, all).scan(0.0, |sum, off| {
+        *sum += off;
+        Some(*sum)
     });
     let sums: Vec<f64> = [0.0].into_iter().chain(off).collect();
     let bound = |piece: usize| piece * len / PIECES;
@@ -154,7 +152,6 @@ fn one_stretch_may_harm(recording: &Recording, all: &[f64]) -> bool {
         true => LEAST_IF_SUSPECT,
         false => LEAST,
     };
-    let span = usual_span(&recording.output);
     let every = len.div_ceil(SEEN_OF_RANGE);
     stretches.any(|rows| {
         let off = (sums[len] - sums[rows.end] + sums[rows.start]) / (len - rows.len()) as f64;

@@ -240,8 +240,8 @@ fn without_folds(
     predicted_without(&recording, &options, fold).ok()
 }
 
-/// The sign of the model of the samples that are `kept`, where their correlation is clear: that of the
-/// other sign need not be tried. With a load the output may follow that.
+/// The sign of the model of the samples that are `kept`, where their correlation is clear: the other
+/// sign need not be tried. With a load there is none, because the output may follow the load.
 fn clear_sign(recording: &Recording, kept: impl Fn(usize) -> bool) -> Option<Sign> {
     if recording.load.is_some() {
         return None;

@@ -98,9 +98,7 @@ pub(super) fn of_the_series(
     let mut found: Vec<Suspect> = parts.map(Suspect::unseen).collect();
     let misread = readings(recording, cuts).into_iter();
     found.extend(misread.map(|(rows, way)| Suspect::seen(rows, Some(way))));
-    let parts = between(cuts, len)
-        .into_iter()
-        .filter(|rows| are_fewer(rows, len));
+    let parts = between(cuts, len).into_iter();
     found.extend(parts.filter_map(|rows| slipped(recording, rows)));
     let channels = [&recording.input, &recording.output].into_iter();
     found.extend(channels.map(|values| still(values)).flat_map(|runs| {
@@ -127,10 +125,10 @@ pub(super) fn of_models(recording: &Recording, cuts: &[usize], predicted: &[f64]
             }
         }
     }
-    let suspects = found.into_iter().map(|rows| vec![rows]).flat_map(|rows| {
-        let exchanged = || Suspect::seen(rows.clone(), Some(Reading::Exchanged));
-        let exchanged = fits_exchanged(recording, &rows[0]).then(exchanged);
-        exchanged.into_iter().chain([Suspect::unseen(rows)])
+    let suspects = found.into_iter().flat_map(|rows| {
+        let exchanged = || Suspect::seen(vec![rows.clone()], Some(Reading::Exchanged));
+        let exchanged = fits_exchanged(recording, &rows).then(exchanged);
+        exchanged.into_iter().chain([Suspect::unseen(vec![rows])])
     });
     suspects.collect()
 }

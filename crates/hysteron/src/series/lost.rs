@@ -169,31 +169,39 @@ fn replaced(
     deviations: f64,
     runs: bool,
 ) -> (Vec<usize>, Vec<f64>) {
-    let mut values = read.to_vec();
-    let mut found: Vec<usize> = Vec::new();
-    if runs {
+    let mut held = match runs {
+        true => held(read, follower),
+        false => Vec::new(),
+    };
+    if !held.is_empty() {
         let longest = half_a_branch(read);
-        let mut held = held(read, follower);
         held.retain(|run| run.len() <= longest);
-        held.iter().for_each(|run| fill(&mut values, run));
-        if !rounds(&mut values, None, deviations).is_empty() {
-            // Many wrong readings make many large steps, and among those the first step of a burst
-            // may look usual. What is usual is seen once they are gone.
-            let mended = std::mem::replace(&mut values, read.to_vec());
-            held.iter().for_each(|run| fill(&mut values, run));
-            found = rounds(&mut values, steps(&mended), deviations);
-        }
-        found.extend(held.into_iter().flatten());
-    } else {
-        found = spikes::remove(&mut values, deviations);
     }
+    let without_held = || {
+        let mut values = read.to_vec();
+        held.iter().for_each(|run| fill(&mut values, run));
+        values
+    };
+    let mut values = without_held();
+    let mut found = match runs {
+        true => rounds(&mut values, None, deviations),
+        false => spikes::remove(&mut values, deviations),
+    };
+    if runs && !found.is_empty() {
+        // Many wrong readings make many large steps, and among those the first step of a burst may
+        // look usual. What is usual is seen once they are gone.
+        let usual = steps(&values);
+        values = without_held();
+        found = rounds(&mut values, usual, deviations);
+    }
+    found.extend(held.into_iter().flatten());
     found.sort_unstable();
     found.dedup();
     (found, values)
 }
 
-/// Puts lines in place of bursts and spikes, round by round. Returns their samples. The `usual` steps
-/// are those of the series in each round where they are not known.
+/// Puts lines in place of bursts and spikes, round by round. Returns their samples. Where the `usual`
+/// steps are not known, each round takes those of the series.
 fn rounds(values: &mut [f64], usual: Option<Steps>, deviations: f64) -> Vec<usize> {
     let mut found = Vec::new();
     for _ in 0..ROUNDS {

@@ -13,8 +13,8 @@ pub(crate) const MANY: usize = 300;
 /// weights above zero alone, and needs no search for a structure.
 const FACTORED: usize = 500;
 
-/// Elements of a matrix are kept sparse if they are less than this share of those of a dense factor.
-/// So are elements of a factor.
+/// Elements of a matrix are kept sparse if they are less than this share of those of a dense
+/// factor. So are elements of a factor.
 const SPARSE: f64 = 0.25;
 
 /// `Aᵀ A` of some samples.
