@@ -231,10 +231,7 @@ impl WeightPrior {
                 let start: Vec<f64> = place.iter().map(|n| self.mean[*n].max(0.0)).collect();
                 pivoting::nonnegative(&matrix, &right, &start, progress)?
             }
-            Solver::Ols => {
-                let x = dense_factor(&matrix)?.solve(&Mat::from_fn(count, 1, |n, _| right[n]));
-                (0..count).map(|n| x[(n, 0)]).collect()
-            }
+            Solver::Ols => dense_factor(&matrix)?.solve(&right),
         };
         let offset = middle - inverse * dot(&mixed, &x);
         let mut residual = regressor.forward(experiment, &x)?;

@@ -11,12 +11,11 @@
 
 use super::change::Change;
 use crate::identify::{FitOptions, SOME_SMOOTHNESS, predicted_from, predicted_without};
-use crate::model::{Sign, Start};
+use crate::model::Start;
 use crate::prepare::options::Step;
 use crate::prepare::resample::at_times;
 use crate::recording::Recording;
 use crate::series::range;
-use crate::series::spread::mean_and_deviation;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -27,8 +26,6 @@ const BLOCKS: usize = 20;
 const FOLDS: usize = 5;
 /// With fewer samples in a block nothing can be judged.
 const SHORTEST: usize = 3;
-/// A correlation of this size tells the sign of a model.
-const CLEAR: f64 = 0.5;
 /// A gain below this share of the error is rounding, or luck.
 const WORTH: f64 = 1e-3;
 
@@ -210,11 +207,7 @@ pub(super) fn from_kept(recording: &Recording, kept: &dyn Fn(usize) -> bool) -> 
         return None;
     }
     let recording = with_its_load(recording);
-    let options = FitOptions {
-        sign: clear_sign(&recording, |n| kept[n] > 0.0),
-        ..small()
-    };
-    predicted_from(&recording, &options, &kept).ok()
+    predicted_from(&recording, &small(), &kept).ok()
 }
 
 /// The group of blocks that a sample of `len` belongs to.
@@ -232,30 +225,8 @@ fn without_folds(
         return None;
     }
     let recording = with_its_load(recording);
-    let options = FitOptions {
-        range,
-        sign: clear_sign(&recording, |n| fold[n].is_some()),
-        ..small()
-    };
+    let options = FitOptions { range, ..small() };
     predicted_without(&recording, &options, fold).ok()
-}
-
-/// The sign of the model of the samples that are `kept`, where their correlation is clear: the other
-/// sign need not be tried. With a load there is none, because the output may follow the load.
-fn clear_sign(recording: &Recording, kept: impl Fn(usize) -> bool) -> Option<Sign> {
-    if recording.load.is_some() {
-        return None;
-    }
-    let kept = || (0..recording.len()).filter(|n| kept(*n));
-    let of = |values: &[f64]| mean_and_deviation(&kept().map(|n| values[n]).collect::<Vec<_>>());
-    let ((x, x_deviation), (y, y_deviation)) = (of(&recording.input), of(&recording.output));
-    let together = kept().map(|n| (recording.input[n] - x) * (recording.output[n] - y));
-    let correlation = mean(together) / (x_deviation * y_deviation);
-    match correlation {
-        r if r > CLEAR => Some(Sign::Positive),
-        r if r < -CLEAR => Some(Sign::Negative),
-        _ => None,
-    }
 }
 
 /// Lowest and highest value.

@@ -9,7 +9,6 @@ use crate::identify::weights::sums::{Coefficients, Sums, centred};
 use crate::identify::weights::unit_sums::UnitSums;
 use crate::identify::weights::units::{Folds, Units};
 use crate::model::LoadPart;
-use crate::model::Solver;
 use crate::parallel;
 use crate::progress::Progress;
 use faer::Mat;
@@ -50,10 +49,7 @@ pub(crate) fn replicates(
     let (options, experiment) = (&problem.options, &problem.experiment);
     let regressor = &problem.regressor;
     let solution = &fitted.solution;
-    let factor = match options.solver {
-        Solver::Ols => Some(equations.penalised.factor()?),
-        Solver::Nnls => None,
-    };
+    let factor = equations.penalised.factor(options.solver)?;
     let LeftOutErrors { units, errors } = left_out;
     let sums = UnitSums::new(regressor, experiment, errors, units)?;
     let of_free = free.unit_products(errors, units);

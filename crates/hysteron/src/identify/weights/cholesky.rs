@@ -1,6 +1,6 @@
 //! A Cholesky factor that is updated when one variable is added or removed, in `O(p²)` time.
 
-use faer::{Mat, Side};
+use crate::identify::weights::definite::Definite;
 
 /// `L` with `L Lᵀ` the matrix of the variables added so far, in that order. The rows are packed.
 #[derive(Default)]
@@ -24,12 +24,14 @@ impl Cholesky {
 
     /// The factor of a whole matrix; `None` if the matrix is not positive definite up to rounding.
     pub(crate) fn new(size: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
-        let factor = Mat::from_fn(size, size, &element).llt(Side::Lower).ok()?;
-        let l = factor.L();
-        let definite = |i: usize| l[(i, i)].powi(2) > ROUNDING * element(i, i);
-        let rows = (0..size).flat_map(|i| (0..=i).map(move |j| l[(i, j)]));
+        let factor = Definite::new(size, |j, to| {
+            let below = (j..size).map(|i| element(i, j));
+            to.iter_mut().zip(below).for_each(|(to, a)| *to = a);
+        })?;
+        let definite = |i: usize| factor.at(i, i).powi(2) > ROUNDING * element(i, i);
+        let rows = (0..size).flat_map(|i| (0..=i).map(move |j| (i, j)));
         (0..size).all(definite).then(|| Self {
-            rows: rows.collect(),
+            rows: rows.map(|(i, j)| factor.at(i, j)).collect(),
             size,
         })
     }

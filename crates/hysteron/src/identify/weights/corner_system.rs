@@ -499,7 +499,7 @@ mod tests {
             }
             let (b, _) = dense.right(problem.targets(Sign::Positive)).unwrap();
             for solver in [Solver::Nnls, Solver::Ols] {
-                let factor = (solver == Solver::Ols).then(|| sparse.penalised.factor().unwrap());
+                let factor = sparse.penalised.factor(solver).unwrap();
                 let start = match rng.random_range(0..2) {
                     0 => vec![0.0; b.len()],
                     _ => b.iter().map(|_| rng.random_range(0.0..1.0)).collect(),
@@ -510,8 +510,7 @@ mod tests {
                     .unwrap();
                 let own_breach = breach(&dense.penalised, &b, &x, solver);
                 // With the strongest penalties rounding stops the dense way too.
-                let factor = (solver == Solver::Ols).then(|| dense.penalised.factor());
-                let factor = factor.and_then(|factor| factor.ok());
+                let factor = dense.penalised.factor(solver).unwrap_or_default();
                 let other = &dense.penalised;
                 let x = other
                     .minimum(&b, &start, factor.as_ref(), Progress::NONE)

@@ -5,7 +5,7 @@
 //! loads. `units` divides the samples into branches or parts of them; `sums` and `unit_sums` are
 //! products of groups of samples, from which fits and their errors follow without the samples.
 //! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting` and `cholesky`; `nested` says where a search begins. With many
+//! equations with `nnls`, `pivoting`, `cholesky` and `definite`; `nested` says where a search begins. With many
 //! levels the Gram matrix is kept sparse, over Everett corners: `layout`, `corner_gram`,
 //! `corner_system` and `grid_factor`; `coarse` says where their search begins. `room` limits the
 //! memory. `again` fits the same inputs to other outputs.
@@ -16,6 +16,7 @@ mod coarse;
 pub(super) mod column;
 pub(super) mod corner_gram;
 pub(super) mod corner_system;
+pub(super) mod definite;
 pub(super) mod experiment;
 pub(super) mod free;
 pub(super) mod gram;

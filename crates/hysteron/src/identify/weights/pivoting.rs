@@ -4,10 +4,9 @@
 //! factors are enough. An active set method would add the variables one by one.
 
 use crate::error::Result;
+use crate::identify::weights::definite::Definite;
 use crate::identify::weights::nnls;
 use crate::progress::Progress;
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 
 /// Number of block exchanges that may fail to reduce the number of infeasible variables before the
 /// method gives up.
@@ -97,12 +96,7 @@ pub(crate) fn minimum_by(
 
 /// The minimum over the members alone, without sign constraint.
 fn free_minimum(a: &[f64], b: &[f64], members: &[usize]) -> Option<Vec<f64>> {
-    if members.is_empty() {
-        return Some(Vec::new());
-    }
-    let element = |i: usize, j: usize| a[members[i] * b.len() + members[j]];
-    let size = members.len();
-    let factor = Mat::from_fn(size, size, element).llt(Side::Lower).ok()?;
-    let x = factor.solve(&Mat::from_fn(size, 1, |n, _| b[members[n]]));
-    Some((0..size).map(|n| x[(n, 0)]).collect())
+    let factor = Definite::of_members(a, b.len(), members)?;
+    let right: Vec<f64> = members.iter().map(|n| b[*n]).collect();
+    Some(factor.solve(&right))
 }

@@ -9,6 +9,7 @@
 use crate::error::Result;
 use crate::identify::options::Prior;
 use crate::identify::weights::corner_system::{CornerSystem, eliminate};
+use crate::identify::weights::definite::Definite;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::{FreeColumns, Mixed};
 use crate::identify::weights::gram::Gram;
@@ -19,8 +20,6 @@ use crate::identify::weights::smoothness::Smoothness;
 use crate::identify::weights::{nnls, pivoting};
 use crate::model::Solver;
 use crate::progress::Progress;
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Mat, Side};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -84,7 +83,7 @@ enum Matrix {
 
 /// The factor of the whole matrix, for weights of either sign.
 pub(crate) enum WholeFactor {
-    Dense(Llt<f64>),
+    Dense(Definite),
     /// Computed where it is used, because it is sparse.
     Corners,
 }
@@ -184,8 +183,8 @@ impl Penalised {
         self.smoothness.add_to(&mut prior, regressor.columns());
         (0..count).for_each(|n| prior[n * count + n] += self.ridge);
         Ok((
-            half_log_determinant(&prior)?,
-            half_log_determinant(&matrix)?,
+            dense_factor(&prior)?.half_log_determinant(),
+            dense_factor(&matrix)?.half_log_determinant(),
         ))
     }
 
@@ -198,20 +197,20 @@ impl Penalised {
         factor: Option<&WholeFactor>,
         progress: Progress<'_>,
     ) -> Result<Vec<f64>> {
-        let solved = |factor: &Llt<f64>| {
-            let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
-            (0..right.len()).map(|n| x[(n, 0)]).collect()
-        };
         match (factor, &self.matrix) {
-            (Some(WholeFactor::Dense(factor)), _) => return Ok(solved(factor)),
+            (Some(WholeFactor::Dense(factor)), _) => return Ok(factor.solve(right)),
             (Some(WholeFactor::Corners), Matrix::Corners(system)) => {
                 let all: Vec<usize> = (0..right.len()).collect();
                 return match system.free_minimum(right, &all) {
                     Some(x) => Ok(x),
-                    None => Ok(solved(&dense_factor(&system.dense()?)?)),
+                    None => Ok(dense_factor(&system.dense()?)?.solve(right)),
                 };
             }
             _ => {}
+        }
+        // Then `½ xᵀ M x − bᵀ x` is nowhere below zero. So it is with one sign of most fits.
+        if right.iter().all(|b| *b <= 0.0) {
+            return Ok(vec![0.0; right.len()]);
         }
         // With smoothness most weights are not zero, so try block pivoting first.
         let (mut x, exact) = match (self.smoothness.is_any(), &self.matrix) {
@@ -260,14 +259,19 @@ impl Penalised {
         Ok((x, gain))
     }
 
-    /// The factor of the whole matrix, for weights of either sign.
-    pub(crate) fn factor(&self) -> Result<WholeFactor> {
+    /// The factor of the whole matrix, where the solver allows weights of either sign.
+    pub(crate) fn factor(&self, solver: Solver) -> Result<Option<WholeFactor>> {
+        if solver == Solver::Nnls {
+            return Ok(None);
+        }
         let matrix = match &self.matrix {
             Matrix::Dense(matrix) => Cow::Borrowed(matrix),
-            Matrix::Corners(system) if system.can_factor() => return Ok(WholeFactor::Corners),
+            Matrix::Corners(system) if system.can_factor() => {
+                return Ok(Some(WholeFactor::Corners));
+            }
             Matrix::Corners(system) => Cow::Owned(system.dense()?),
         };
-        Ok(WholeFactor::Dense(dense_factor(&matrix)?))
+        Ok(Some(WholeFactor::Dense(dense_factor(&matrix)?)))
     }
 
     /// The tiny ridge that only makes the matrix definite.
@@ -356,10 +360,7 @@ impl<'a> NormalEquations<'a> {
         progress: Progress<'_>,
     ) -> Result<Solution> {
         let count = self.regressor.columns().len();
-        let full = match solver {
-            Solver::Ols => Some(self.penalised.factor()?),
-            Solver::Nnls => None,
-        };
+        let full = self.penalised.factor(solver)?;
         let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
         let mut best = self.solution(target.clone(), start)?;
         let nothing = NOTHING_LEFT * target.clone().map(|y| y * y).sum::<f64>();
@@ -448,16 +449,6 @@ impl<'a> NormalEquations<'a> {
     }
 }
 
-/// Half the logarithm of the determinant of a positive definite matrix: the sum of the logarithms
-/// of its Cholesky factor's diagonal.
-fn half_log_determinant(matrix: &[f64]) -> Result<f64> {
-    let factor = dense_factor(matrix)?;
-    let lower = factor.L();
-    Ok((0..lower.nrows()).map(|n| lower[(n, n)].ln()).sum())
-}
-
-pub(crate) fn dense_factor(matrix: &[f64]) -> Result<Llt<f64>> {
-    let count = matrix.len().isqrt();
-    let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
-    matrix.llt(Side::Lower).map_err(|_| not_definite())
+pub(crate) fn dense_factor(matrix: &[f64]) -> Result<Definite> {
+    Definite::of_rows(matrix).ok_or_else(not_definite)
 }

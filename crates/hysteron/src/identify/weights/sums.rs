@@ -252,10 +252,7 @@ impl Reduced {
         start: &[f64],
         progress: Progress<'_>,
     ) -> Result<Coefficients> {
-        let factor = match solver {
-            Solver::Ols => Some(penalised.factor()?),
-            Solver::Nnls => None,
-        };
+        let factor = penalised.factor(solver)?;
         let x = penalised.minimum(&self.right, start, factor.as_ref(), progress)?;
         Ok(self.with_free(x))
     }
@@ -268,10 +265,7 @@ impl Reduced {
         near: &[f64],
         progress: Progress<'_>,
     ) -> Result<Coefficients> {
-        let factor = match solver {
-            Solver::Ols => Some(penalised.factor()?),
-            Solver::Nnls => None,
-        };
+        let factor = penalised.factor(solver)?;
         let pull = penalised.rounding();
         let right = self.right.iter().zip(near);
         let right: Vec<f64> = right.map(|(b, x)| b + pull * x).collect();
