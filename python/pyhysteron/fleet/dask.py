@@ -50,7 +50,7 @@ def fit(
     Rows of an actuator may be anywhere in the frame. The work is done where the result is used, and
     again with each use: write it, or `persist` it. A partition is in memory while it is fitted.
 
-    Each partition has pilots of its own, so let some hundred actuators share one.
+    Each partition has pilots of its own, so let about a thousand actuators share one.
 
     Parameters
     ----------

@@ -40,9 +40,9 @@ def fit(
     Rows of an actuator may be anywhere in the frame. The work is done where the result is used, and
     again with each use: write it, or `persist` it.
 
-    Each partition has pilots of its own (``choice='pilots'``), so let some hundred actuators share
-    one. With ``choice='each'``, or nothing left to the data, a model has the same bits as in one
-    process.
+    Each partition has pilots of its own (``choice='pilots'``), so let about a thousand actuators
+    share one. With ``choice='each'``, or nothing left to the data, a model has the same bits as in
+    one process.
 
     Parameters
     ----------
