@@ -92,8 +92,9 @@ def fit(
         for note in found.notes:
             _LOG.warning(note.replace(str(table), "a partition"))
         if found.fitted:
-            for batch in pyarrow.parquet.ParquetFile(models).iter_batches(_ROWS):
-                yield from _rows(batch, rows)
+            with pyarrow.parquet.ParquetFile(models) as fitted:
+                for batch in fitted.iter_batches(_ROWS):
+                    yield from _rows(batch, rows)
     lost = [{"id": id, "failed": why} for id, why in failed.items()]
     yield from pyarrow.Table.from_pylist(lost, rows).to_batches()
 
