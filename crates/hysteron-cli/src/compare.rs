@@ -83,14 +83,32 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
     }
 }
 
+impl Compared<'_> {
+    /// The models with their runs and verdicts, the one of least error first.
+    fn best_first<'a>(
+        &'a self,
+        names: &'a [String],
+    ) -> impl Iterator<Item = (&'a String, &'a Forward, &'a Verdict)> {
+        let runs = names.iter().zip(&self.runs).zip(&self.verdicts);
+        let mut runs: Vec<_> = runs
+            .map(|((name, run), verdict)| (name, run, verdict))
+            .collect();
+        runs.sort_by(|a, b| a.1.errors.rmse.total_cmp(&b.1.errors.rmse));
+        runs.into_iter()
+    }
+}
+
 /// Writes a page for each recording; returns the first one.
 fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> Result<PathBuf> {
     let typed = Typed::now()?;
     let mut pages = Vec::new();
     for (n, compared) in all.iter().enumerate() {
-        let named = names.iter().zip(&compared.runs);
-        let models: Vec<NamedForward<'_>> = named
-            .map(|(name, forward)| NamedForward { name, forward })
+        let models: Vec<NamedForward<'_>> = (compared.best_first(names))
+            .map(|(name, forward, verdict)| NamedForward {
+                name,
+                forward,
+                verdict: Some(verdict),
+            })
             .collect();
         let title = format!("Models on {}", compared.data.display());
         let shown = one_after_the_other(&compared.recordings).ok_or("there is no recording")?;
@@ -140,13 +158,10 @@ fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
             "% of range",
             "samples",
         ])];
-        let verdicts = compared.runs.iter().zip(&compared.verdicts);
-        let mut runs: Vec<_> = names.iter().zip(verdicts).collect();
-        runs.sort_by(|a, b| a.1.0.errors.rmse.total_cmp(&b.1.0.errors.rmse));
-        let best = runs.first().map(|(name, (_, verdict))| {
+        let best = compared.best_first(names).next().map(|(name, _, verdict)| {
             format!("\n\nthe best is {name}\n{}", text::verdict(verdict))
         });
-        for (name, (run, _)) in runs {
+        for (name, run, _) in compared.best_first(names) {
             let quantity = &compared.recordings[0].output_quantity;
             let mut row = text::errors(name, &run.errors, quantity);
             let seen = match (run.was_fitted, run.seen_for_band) {

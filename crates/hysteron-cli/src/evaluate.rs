@@ -2,9 +2,10 @@
 
 use crate::columns::{Given, Named};
 use crate::made::Typed;
+use crate::remedy::say_doubts;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, prepare, recording, text};
-use hysteron::{Errors, Evaluation, InverseRun, Quantity, Recording, Verdict};
+use hysteron::{Errors, Evaluation, Grade, InverseRun, Quantity, Recording, Verdict};
 use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use serde_json::{Value, json};
@@ -33,7 +34,17 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
             ..hysteron::evaluate_errors(&model, &recordings, start)?
         },
     };
-    let verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
+    let mut verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
+    // An error may be one of the rows. They are not looked at for nothing.
+    if verdict.grade != Grade::Good && !args.prepare.prepare {
+        let mut count = 0;
+        for (n, recording) in recordings.iter().enumerate() {
+            let doubts = hysteron::doubts(recording)?;
+            say_doubts(&doubts, &recording::which(n, recordings.len()));
+            count += doubts.len();
+        }
+        verdict = verdict.doubting(count);
+    }
     if let Some(mut folder) = folder {
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let typed = Typed::now()?;

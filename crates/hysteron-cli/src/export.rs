@@ -280,6 +280,7 @@ fn dead_time(model: &Model, dt: Option<f64>) -> Option<String> {
 /// The model, at a load where one is given.
 fn model(path: &std::path::Path, load: Option<f64>) -> Result<hysteron::Model> {
     let model = hysteron::Model::read(path)?;
+    crate::model::say_if_poor(&model);
     Ok(match load {
         Some(load) => model.at_load(load)?,
         None => model,

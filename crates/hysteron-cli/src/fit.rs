@@ -3,6 +3,7 @@
 mod lines;
 
 use crate::columns::{Given, Named};
+use crate::prepare::BeforeFit;
 use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
@@ -37,15 +38,17 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let columns = named.columns();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
+    let mut doubts = 0;
     for data in &args.data {
-        for (recording, preparation, rate) in read(args, data, columns)? {
-            recordings.push(recording);
-            reports.push((preparation, rate));
+        for one in read(args, data, columns)? {
+            recordings.push(one.recording);
+            reports.push((one.report, one.rate));
+            doubts += one.doubts;
         }
     }
     let read = |file: &Path| {
         let read = read(args, file, columns)?.into_iter();
-        Ok(read.map(|(recording, ..)| recording).collect())
+        Ok(read.map(|one| one.recording).collect())
     };
     let mut repeats = Vec::new();
     for file in &args.repeat {
@@ -67,6 +70,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         }
     }
     let verdict = Verdict::of_fit_holding_out(&model, &recordings, what.as_ref())?;
+    let verdict = verdict.doubting(doubts);
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => {
@@ -87,7 +91,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 }
 
 /// The recordings of a file with the units asked for, and prepared.
-fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Vec<Prepared>> {
+fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Vec<BeforeFit>> {
     let recordings = recording::segments(data, columns, &args.how.repair)?;
     let count = recordings.len();
     let each = recordings
@@ -201,8 +205,6 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
         None => Ok(fit),
     }
 }
-
-type Prepared = (Recording, Option<Preparation>, Option<RateDependence>);
 
 fn to_json(
     args: &args::Fit,

@@ -1,7 +1,7 @@
 //! Models from files.
 
-use crate::terminal::Result;
-use hysteron::Model;
+use crate::terminal::{Result, say};
+use hysteron::{Grade, Model, Setting, Verdict};
 use hysteron_files::shell_word;
 use std::path::Path;
 
@@ -11,6 +11,21 @@ pub(crate) fn read(model: &Path, data: &Path) -> Result<Model> {
         true => exchanged(model, data).into(),
         false => error.into(),
     })
+}
+
+/// Says of a model that is going to drive something if its fit calls it poor.
+pub(crate) fn say_if_poor(model: &Model) {
+    let verdict = Verdict::of_record(model).filter(|verdict| verdict.grade == Grade::Poor);
+    let lines = verdict.map(|verdict| verdict.lines(Setting::typed));
+    let error = lines
+        .into_iter()
+        .flatten()
+        .find(|(heading, _)| *heading == "error");
+    if let Some((_, error)) = error {
+        say(format_args!(
+            "the model is poor, do not drive by it yet: it errs by {error}"
+        ));
+    }
 }
 
 /// A word for a shell; options need no quotes.

@@ -122,19 +122,34 @@ pub(crate) fn helps(
         .is_some_and(|(with, without)| with < without))
 }
 
+/// A recording to be fitted, and what is known of it before.
+pub(crate) struct BeforeFit {
+    pub(crate) recording: Recording,
+    pub(crate) report: Option<Preparation>,
+    pub(crate) rate: Option<RateDependence>,
+    /// The number of doubts that were said.
+    pub(crate) doubts: usize,
+}
+
 /// As [`asked_for`], with what a fit is warned of; the report is for the JSON.
 pub(crate) fn before_fit(
     recording: Recording,
     args: &args::PrepareFirst,
     which: &str,
-) -> Result<(Recording, Option<Preparation>, Option<RateDependence>)> {
+) -> Result<BeforeFit> {
     let (recording, report) = asked_for(recording, args, which)?;
-    if report.is_none() {
+    let doubts = match report {
+        None => hysteron::doubts(&recording)?,
         // With the preparation they are refused.
-        say_doubts(&hysteron::doubts(&recording)?, which);
-    }
-    let rate = hysteron::rate_dependence(&recording)?;
-    Ok((recording, report, rate))
+        Some(_) => Vec::new(),
+    };
+    say_doubts(&doubts, which);
+    Ok(BeforeFit {
+        rate: hysteron::rate_dependence(&recording)?,
+        doubts: doubts.len(),
+        recording,
+        report,
+    })
 }
 
 /// Says how the loops of recordings depend on rate, if their model does not follow that.
@@ -188,6 +203,13 @@ fn judged_line(judged: &Judged, output: &Quantity) -> String {
     let samples = hysteron::counted(judged.samples, "sample");
     let verdict = if judged.kept { "taken" } else { "not taken" };
     match (judged.before, judged.after) {
+        // No model of noisy readings tells what they would be without.
+        (Some(before), Some(after)) if step.starts_with("low-pass") => format!(
+            "{step}: {verdict}. On a simulated recording like this one, with this noise, it leaves \
+             {} of it, of {}",
+            output.text(after),
+            output.text(before)
+        ),
         (Some(before), Some(after)) => format!(
             "{step}: {verdict}. With its {samples} a model errs by {} on what it did not \
              see, without by {}",

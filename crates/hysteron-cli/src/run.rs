@@ -188,6 +188,5 @@ fn to_text(found: &Summary) -> String {
             100.0 * share
         ));
     }
-    lines.push(found.end.to_string());
     lines.join("\n")
 }

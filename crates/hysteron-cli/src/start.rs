@@ -49,7 +49,7 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
     remedy::say_doubts(&summary.doubts, "");
     let recordings = prepare::each_asked_for(recordings, &args.prepare)?;
     let model = fit(&recordings)?;
-    let verdict = Verdict::of_fit(&model, &recordings)?;
+    let verdict = Verdict::of_fit(&model, &recordings)?.doubting(summary.doubts.len());
     let mut advice = prepare::advice(&model, &recordings, &args.prepare)?;
     let mut prepared = args.prepare.prepare;
     let is_asked = || advice.iter().any(Advice::is_cured_by_preparation);
@@ -160,8 +160,10 @@ fn fit(recordings: &[Recording]) -> Result<Model> {
 
 fn to_text(summary: &RecordingSummary, model: &Model) -> Result<String> {
     let mut lines = vec![format!(
-        "{} samples, {} reversals of the input, {} of them larger than 1 % of its range",
-        summary.samples, summary.input.reversals_of_any_size, summary.input.reversals,
+        "{}, {} of the input, {} of them larger than 1 % of its range",
+        hysteron::counted(summary.samples, "sample"),
+        hysteron::counted(summary.input.reversals_of_any_size, "reversal"),
+        summary.input.reversals,
     )];
     if let Some(fit) = &model.fit {
         lines.push(format!(

@@ -43,6 +43,7 @@ const LOOK_AHEAD: usize = 65_536;
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
+    model::say_if_poor(&model);
     let (policy, tolerance) = match args.policy {
         args::Policy::Hold => (Policy::Hold, 0.0),
         args::Policy::Anticipate => (Policy::Anticipate, model.usual_tolerance()),

@@ -164,10 +164,14 @@ class Frame {
   texts() {
     // A narrow page has the title in the caption only, and a remark where its heading leaves room.
     const isTitle = (/** @type {Words} */ { at: [, y] }) => y < this.top - 30;
-    const fits = (/** @type {Words} */ { at: [, y], text }) => {
-      const heading = this.words.find(({ anchor, at }) => anchor === "start" && at[1] === y);
+    const plotted = this.room - this.left - (this.size.width - this.right);
+    const fits = (/** @type {Words} */ { at: [x, y], text }) => {
+      // Of panels side by side each has its own.
+      const own = (/** @type {Words} */ { anchor, at }) => anchor === "start" && at[1] === y && at[0] <= x;
+      const heading = this.words.filter(own).sort((a, b) => b.at[0] - a.at[0])[0];
       const letters = (heading?.text.length ?? 0) + text.length;
-      return letters * 5.4 < this.room - this.left;
+      const from = heading?.at[0] ?? this.left;
+      return letters * 5.4 < plotted * (this.across(x) - this.across(from));
     };
     const stays = (/** @type {Words} */ words) =>
       words.anchor === "end" ? isTitle(words) || fits(words) : !isTitle(words);

@@ -62,7 +62,7 @@ pub(crate) fn stack(
     let mut area = Rect {
         x: left,
         y: sheet.top,
-        width: WIDTH - MARGIN - left,
+        width: sheet.width - MARGIN - left,
         height,
     };
     area.y = words_of(sheet, events, x, area);

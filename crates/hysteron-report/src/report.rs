@@ -31,8 +31,8 @@ use std::path::{Path, PathBuf};
 ///     shown: Shown::Models {
 ///         recording: &recording,
 ///         models: &[
-///             NamedForward { name: "5 levels", forward: &few },
-///             NamedForward { name: "20 levels", forward: &many },
+///             NamedForward { name: "5 levels", forward: &few, verdict: None },
+///             NamedForward { name: "20 levels", forward: &many, verdict: None },
 ///         ],
 ///     },
 ///     made: Made::default(),

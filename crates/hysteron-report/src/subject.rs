@@ -1,6 +1,7 @@
 //! What a report shows: figures in sections, and the words around them.
 
 use crate::figure::Figure;
+use hysteron::{Setting, Verdict};
 use maud::{Markup, html};
 
 /// What a report shows; its views are subjects.
@@ -75,4 +76,16 @@ impl Simulated {
     /// Of a recording.
     pub(crate) const RECORDING: &'static str =
         "Simulated: this recording comes from a simulated plant, not from a measurement.";
+}
+
+/// Whether a model is good enough, and if not, why.
+pub(crate) fn verdict(verdict: Option<&Verdict>) -> Markup {
+    let lines = verdict
+        .into_iter()
+        .flat_map(|verdict| verdict.lines(Setting::typed));
+    html! {
+        div.wide { table.facts.verdict { @for (heading, text) in lines {
+            tr { th scope="row" { (heading) } td { (text) } }
+        } } }
+    }
 }

@@ -124,7 +124,8 @@ export function show(overview, drawn, draw, changed) {
  * @param {{isOpen: boolean, drawn: Set<number>, draw: () => void, changed: (overview: any) => void}} how
  */
 function card(overview, fit, place, { isOpen, drawn, draw, changed }) {
-  const best = fit.id === overview.best;
+  // Of one there is no best.
+  const best = fit.id === overview.best && overview.fits.length > 1;
   const rival = fit.held_out?.rivals.reduce((a, b) => (a.rmse < b.rmse ? a : b));
   const wins = rival && rival.rmse < (fit.held_out?.model.rmse ?? 0);
   const options = Object.entries(fit.options).filter(([name]) => name !== "levels").map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";

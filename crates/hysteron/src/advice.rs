@@ -93,8 +93,10 @@ impl fmt::Display for Advice {
                 range: (low, high),
             } => write!(
                 f,
-                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} \
-                 and were clipped to its ends"
+                "{inputs} of {samples} inputs lie outside the active range {} to {} and were clipped \
+                 to its ends",
+                Quantity::default().text(*low),
+                Quantity::default().text(*high)
             ),
             Self::AgainstInput { part } if *part > 0.5 => write!(
                 f,

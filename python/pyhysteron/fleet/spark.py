@@ -17,7 +17,7 @@ except ImportError as _missing:
 from . import _frames
 
 if TYPE_CHECKING:
-    from pyspark.sql import DataFrame
+    from pyspark.sql import DataFrame as _DataFrame
 
 __all__ = ["fit"]
 
@@ -26,7 +26,7 @@ _TYPES = {"string": "string", "int64": "bigint", "double": "double", "list": "ar
 
 
 def fit(
-    frame: "DataFrame",
+    frame: "_DataFrame",
     *,
     by: str,
     input: str,
@@ -34,7 +34,7 @@ def fit(
     order: str | None = None,
     partitions: int | None = None,
     **options: Any,
-) -> "DataFrame":
+) -> "_DataFrame":
     """Fit a model to each actuator of a frame of samples.
 
     Rows of an actuator may be anywhere in the frame. The work is done where the result is used, and

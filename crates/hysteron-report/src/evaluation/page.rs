@@ -9,8 +9,8 @@ use crate::evaluation::figures::{
 use crate::evaluation::view::View;
 use crate::made;
 use crate::number::{count, percent, significant};
-use crate::subject::{Section, Simulated, Subject};
-use hysteron::{Confidence, Errors, Setting};
+use crate::subject::{Section, Simulated, Subject, verdict};
+use hysteron::{Confidence, Errors};
 use maud::{Markup, html};
 
 impl Subject for View<'_> {
@@ -71,7 +71,7 @@ impl Subject for View<'_> {
     }
 
     fn above(&self) -> Markup {
-        verdict(self)
+        verdict(self.verdict.as_ref())
     }
 
     fn below(&self) -> Markup {
@@ -82,17 +82,6 @@ impl Subject for View<'_> {
                  with each caption."
             }
         }
-    }
-}
-
-/// Whether the model is good enough, and if not, why.
-fn verdict(view: &View<'_>) -> Markup {
-    let lines = view.verdict.iter();
-    let lines = lines.flat_map(|verdict| verdict.lines(Setting::typed));
-    html! {
-        div.wide { table.facts.verdict { @for (heading, text) in lines {
-            tr { th scope="row" { (heading) } td { (text) } }
-        } } }
     }
 }
 

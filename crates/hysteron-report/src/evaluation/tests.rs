@@ -26,7 +26,26 @@ fn figures(fixture: &Fixture) -> Vec<(&'static str, String)> {
     let drawn: Vec<_> = stems().into_iter().filter_map(draw).collect();
     for (stem, svg) in &drawn {
         let document = roxmltree::Document::parse(svg).unwrap();
-        assert!(document.root_element().has_tag_name("svg"), "{stem}");
+        let root = document.root_element();
+        assert!(root.has_tag_name("svg"), "{stem}");
+        let number = |node: &roxmltree::Node<'_, '_>, name: &str| -> f64 {
+            node.attribute(name)
+                .map_or(0.0, |text| text.parse().unwrap())
+        };
+        let page = number(&root, "width");
+        for rect in document
+            .descendants()
+            .filter(|node| node.has_tag_name("rect"))
+        {
+            let right = number(&rect, "x")
+                + rect.attribute("width").map_or(0.0, |text| {
+                    text.strip_suffix('%').map_or_else(
+                        || text.parse().unwrap(),
+                        |share| page * share.parse::<f64>().unwrap() / 100.0,
+                    )
+                });
+            assert!(right <= page, "{stem}: a panel ends at {right} of {page}");
+        }
         for node in document.descendants() {
             for attribute in node.attributes() {
                 let value = attribute.value();

@@ -44,17 +44,13 @@ fn words(_: &View<'_>) -> Option<[String; 2]> {
 }
 
 fn draw(view: &View<'_>, sheet: &mut Sheet) -> Option<f64> {
-    let slope = match (&view.output.unit, &view.input.unit) {
-        (Some(output), Some(input)) => Some(format!("{output}/{input}")),
-        _ => None,
-    };
     let percent = Labelled {
         name: "RMSE".into(),
         unit: Some("% of range".into()),
     };
     let slope = Labelled {
         name: "slope".into(),
-        unit: slope,
+        unit: view.slope_unit(),
     };
     let numbers: [Number; 5] = [
         (percent, |row| Some(row.model.fit.as_ref()?.nrmse_percent)),

@@ -30,7 +30,7 @@ impl Subject for View<'_> {
     fn lead(&self) -> Markup {
         html! {
             (count(self.ordered.len())) " actuators: " (self.output.name) " over "
-            (self.input.name) ". " (count(self.outliers())) " are unlike the others."
+            (self.input.name) ". " (self.unlike())
         }
     }
 
@@ -43,6 +43,28 @@ impl Subject for View<'_> {
     }
 }
 
+/// Outliers named in the first line, at most.
+const NAMED: usize = 5;
+
+impl View<'_> {
+    /// How many are unlike the others, and which.
+    fn unlike(&self) -> String {
+        let outliers = self.outliers();
+        let names = self.ordered.iter().take(outliers.min(NAMED));
+        let names: Vec<&str> = names.map(|(row, _)| row.id.as_str()).collect();
+        let names = names.join(", ");
+        match outliers {
+            0 => "None is unlike the others.".into(),
+            1 => format!("One is unlike the others: {names}."),
+            2..=NAMED => format!("{outliers} are unlike the others: {names}."),
+            _ => format!(
+                "{} are unlike the others, first of all {names}.",
+                count(outliers)
+            ),
+        }
+    }
+}
+
 /// The outliers, or the ten strangest where there are fewer.
 fn table(view: &View<'_>) -> Markup {
     let listed = view.outliers().clamp(View::DRAWN, LISTED);
@@ -51,6 +73,7 @@ fn table(view: &View<'_>) -> Markup {
         None => String::new(),
     };
     let [output, input] = [&view.output, &view.input].map(|q| unit(&q.unit));
+    let slope = unit(&view.slope_unit());
     let optional = |value: Option<f64>| value.map_or("–".to_owned(), |v| significant(v, 4));
     html! {
         div.wide { table {
@@ -62,6 +85,7 @@ fn table(view: &View<'_>) -> Markup {
                 th scope="col" { "Stroke" (output) }
                 th scope="col" { "Width" (input) }
                 th scope="col" { "Position" (input) }
+                th scope="col" { "Slope" (slope) }
             } }
             tbody { @for (row, strange) in view.ordered.iter().take(listed) {
                 @let (name, by) = strange.most();
@@ -74,6 +98,7 @@ fn table(view: &View<'_>) -> Markup {
                     td { (significant(row.shape.stroke, 4)) }
                     td { (optional(row.shape.width)) }
                     td { (optional(row.shape.position)) }
+                    td { (optional(row.shape.slope)) }
                 }
             } }
         } }

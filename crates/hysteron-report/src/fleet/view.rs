@@ -45,6 +45,11 @@ impl<'a> View<'a> {
         fits.any(|fit| fit.simulated)
     }
 
+    pub(super) fn slope_unit(&self) -> Option<String> {
+        let (output, input) = (self.output.unit.as_ref()?, self.input.unit.as_ref()?);
+        Some(format!("{output}/{input}"))
+    }
+
     pub(super) fn outliers(&self) -> usize {
         let strange = self.ordered.iter();
         strange.filter(|(_, s)| s.is_outlier()).count()

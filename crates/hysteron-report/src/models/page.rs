@@ -4,7 +4,7 @@ use super::residuals;
 use super::view::View;
 use crate::made;
 use crate::number::{count, percent, significant};
-use crate::subject::{Section, Simulated, Subject};
+use crate::subject::{Section, Simulated, Subject, verdict};
 use maud::{Markup, html};
 
 impl Subject for View<'_> {
@@ -27,12 +27,13 @@ impl Subject for View<'_> {
     fn lead(&self) -> Markup {
         html! {
             "Models of " (self.output.name) " over " (self.input.name) ", on one recording of "
-            (count(self.recording.input.len())) " samples."
+            (count(self.recording.input.len())) " samples. The best is " (self.best().name) "."
         }
     }
 
     fn above(&self) -> Markup {
         html! {
+            (verdict(self.best().verdict))
             (table(self))
             @if let Some(source) = &self.recording.source {
                 p {

@@ -29,7 +29,11 @@ fn every_model_has_its_panel_and_its_row() {
     let names = ["good <model>", "bad model", "exact"];
     let named = names.iter().zip(&runs);
     let models: Vec<NamedForward<'_>> = named
-        .map(|(name, forward)| NamedForward { name, forward })
+        .map(|(name, forward)| NamedForward {
+            name,
+            forward,
+            verdict: None,
+        })
         .collect();
     for count in 1..=models.len() {
         let folder = tempfile::tempdir().unwrap();
@@ -63,6 +67,7 @@ fn what_does_not_fit_together_is_refused() {
     let one = [NamedForward {
         name: "short",
         forward: &short,
+        verdict: None,
     }];
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("report");

@@ -4,7 +4,7 @@ use crate::clock::clock;
 use crate::error::ReportError;
 use crate::number::difference;
 use crate::quantity::Labelled;
-use hysteron::{Forward, Origin, Recording};
+use hysteron::{Forward, Origin, Recording, Verdict};
 use std::borrow::Cow;
 
 /// One model's run over the recording.
@@ -14,6 +14,8 @@ pub struct NamedForward<'a> {
     pub name: &'a str,
     /// Its output, and its errors.
     pub forward: &'a Forward,
+    /// Whether it is good enough; the page shows that of the best.
+    pub verdict: Option<&'a Verdict>,
 }
 
 /// Models, ready to be drawn.
@@ -62,6 +64,17 @@ impl<'a> View<'a> {
             time,
             time_label,
             residuals,
+        })
+    }
+
+    /// The model of least error.
+    pub(super) fn best(&self) -> &NamedForward<'a> {
+        let first = &self.models[0];
+        self.models.iter().fold(first, |best, model| {
+            match model.forward.errors.rmse < best.forward.errors.rmse {
+                true => model,
+                false => best,
+            }
         })
     }
 

@@ -1,7 +1,7 @@
 //! What is said of a fit: its errors, its verdict, and what there is to know.
 
 use super::fault::{Fault, spelt};
-use hysteron::{Advice, Errors, HeldOut, HoldOut, Model, Recording, Verdict, advice};
+use hysteron::{Advice, Errors, HeldOut, HoldOut, Model, Recording, Verdict, advice, doubts};
 
 /// What is said of a fit.
 #[derive(Debug, Clone)]
@@ -23,10 +23,18 @@ impl Judged {
         what: Option<&HoldOut>,
         held_out: Option<HeldOut>,
     ) -> Result<Self, Fault> {
+        let doubts = recordings
+            .iter()
+            .map(doubts)
+            .collect::<Result<Vec<_>, _>>()?;
+        let doubts = doubts.concat();
         let verdict = Verdict::of_fit_holding_out(model, recordings, what)?;
+        let verdict = verdict.doubting(doubts.len());
         let lines = verdict.lines(spelt).into_iter();
         let mut all: Vec<Advice> = advice(model, recordings)?;
         all.extend(held_out.iter().flat_map(HeldOut::advice));
+        let doubts = doubts.iter();
+        let doubts = doubts.map(|doubt| format!("{doubt}: {}", doubt.remedy().spelt(spelt)));
         let advice = all.iter();
         let advice = advice.map(|advice| format!("{advice}: {}", advice.remedy().spelt(spelt)));
         Ok(Self {
@@ -34,7 +42,7 @@ impl Judged {
             verdict: lines
                 .map(|(heading, text)| (heading.to_owned(), text))
                 .collect(),
-            advice: advice.collect(),
+            advice: doubts.chain(advice).collect(),
             held_out,
         })
     }

@@ -42,7 +42,7 @@ fn everybody_can_use_the_page() {
     show_play(&mut browser, &tab);
     browser.value(&tab, "document.querySelector('[name=levels]').value = '12'");
     browser.value(&tab, "document.querySelector('#begin').click()");
-    browser.wait(&tab, "document.querySelector('#fits .badge')");
+    browser.wait(&tab, "document.querySelector('#fits .card')");
     browser.wait(
         &tab,
         "document.querySelector('#plot-plane .heatmaplayer image')",

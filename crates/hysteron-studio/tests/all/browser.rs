@@ -44,7 +44,7 @@ fn whole_way(way: Way, name: &str, text: &str, pictures: &str) {
         "document.querySelector('[name=bootstrap]').value = '20'",
     );
     browser.value(&tab, "document.querySelector('#begin').click()");
-    browser.wait(&tab, "document.querySelector('#fits .badge')");
+    browser.wait(&tab, "document.querySelector('#fits .card')");
     browser.wait(
         &tab,
         "document.querySelectorAll('#plot-plane .heatmaplayer image').length > 0",
@@ -265,7 +265,7 @@ fn fit(browser: &mut Chromium, tab: &Tab) {
         "document.querySelector('[name=bootstrap]').value = '20'",
     );
     browser.value(tab, "document.querySelector('#begin').click()");
-    browser.wait(tab, "document.querySelector('#fits .badge')");
+    browser.wait(tab, "document.querySelector('#fits .card')");
 }
 
 /// All that the session says of itself.
@@ -292,7 +292,7 @@ fn a_session_that_was_taken_home_goes_on(way: Way) {
     let tab = browser.open(&studio.address, 900, 700);
     browser.wait(&tab, EMPTY);
     browser.drop_file(&tab, "mine.session.json", taken.as_str().unwrap());
-    browser.wait(&tab, "document.querySelector('#fits .badge')");
+    browser.wait(&tab, "document.querySelector('#fits .card')");
     assert_eq!(browser.value(&tab, OVERVIEW), seen);
     studio.end();
 }
@@ -382,7 +382,7 @@ fn both_ways_give_the_same_to_take_home() {
             kept = browser.value(&tab, session).as_str().unwrap().to_owned();
         } else {
             browser.drop_file(&tab, "kept.session.json", &kept);
-            browser.wait(&tab, "document.querySelector('#fits .badge')");
+            browser.wait(&tab, "document.querySelector('#fits .card')");
         }
         let taken = "import('./api.js').then(async ({ ask, take }) => {
             const { files: [{ id: file }], fits: [{ id: fit }] } = await ask('overview');
@@ -501,7 +501,7 @@ fn a_page_of_a_folder_that_is_loaded_again_goes_on() {
     browser.value(&tab, again);
     browser.wait(
         &tab,
-        "!window.before && document.querySelector('#fits .badge')",
+        "!window.before && document.querySelector('#fits .card')",
     );
     assert_eq!(browser.value(&tab, OVERVIEW), seen);
     // A fit that is under way when the page goes begins anew.

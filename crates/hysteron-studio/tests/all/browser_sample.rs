@@ -17,7 +17,7 @@ fn fit(browser: &mut Chromium, tab: &Tab, thermal: &str, hold_out: &str) {
         browser.value(tab, &code);
     }
     browser.value(tab, "document.querySelector('#begin').click()");
-    browser.wait(tab, "document.querySelector('#fits .badge')");
+    browser.wait(tab, "document.querySelector('#fits .card')");
     browser.wait(tab, "document.body.dataset.shown === '1'");
 }
 

@@ -29,7 +29,7 @@ fn fit(browser: &mut Chromium, tab: &Tab) {
         "document.querySelector('[name=bootstrap]').value = '0'",
     );
     browser.value(tab, "document.querySelector('#begin').click()");
-    browser.wait(tab, "document.querySelector('#fits .badge')");
+    browser.wait(tab, "document.querySelector('#fits .card')");
     browser.wait(tab, "document.body.dataset.shown === '1'");
 }
 
@@ -245,7 +245,7 @@ fn a_studio_that_was_killed_goes_on() {
         &tab,
         "document.querySelector('#files h3')?.textContent === 'play.csv'",
     );
-    browser.wait(&tab, "document.querySelector('#fits .badge')");
+    browser.wait(&tab, "document.querySelector('#fits .card')");
     studio.end();
     again.end();
 }

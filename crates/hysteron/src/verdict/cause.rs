@@ -10,12 +10,19 @@ use crate::model::{FitSummary, Model};
 use crate::recording::{ONE, Recording, one_speed};
 use crate::series::clipped::clipped;
 use crate::series::lost::held_between_readings;
+use crate::series::mean_and_deviation;
 use crate::series::{different_branches, usual_tolerance};
 
 /// Why a model is not better.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
+    /// Rows are not to be believed ([`crate::doubts`]). No other reason counts before they are
+    /// mended.
+    Doubted {
+        /// The number of doubts.
+        doubts: usize,
+    },
     /// Inputs are outside the plane.
     Outside {
         /// Their share of all inputs, from 0 to 1.
@@ -53,6 +60,11 @@ pub enum Cause {
         coverage: f64,
         /// Number of sessions that the band knows.
         sessions: usize,
+    },
+    /// The output hardly follows the input: what a model says of it is little more than its mean.
+    Unrelated {
+        /// The share of the output's squared deviations that the model explains, from 0 to 1.
+        share: f64,
     },
     /// A simple predictor errs less.
     Rival {
@@ -123,6 +135,8 @@ pub(super) const OUTSIDE: f64 = 0.2;
 /// A band that should hold 95 % and holds less than this, in percent, is of other recordings.
 /// Branches held out of recordings with enough of them keep above 90 (docs/measured/coverage.md).
 const BELONGS: f64 = 80.0;
+/// A model that explains less than this of the squared deviations is of something else.
+const FOLLOWED: f64 = 0.2;
 /// A part of this share is worth a sentence.
 pub(super) const WORTH: f64 = 0.25;
 /// A delay of fewer samples is none.
@@ -157,6 +171,7 @@ impl Cause {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
+            Self::Doubted { .. } => "doubted",
             Self::Outside { .. } => "outside",
             Self::Part(part) => match part.kind {
                 PartKind::Offset => "offset",
@@ -169,6 +184,7 @@ impl Cause {
             Self::Clipped { .. } => "clipped",
             Self::HeldInput { .. } => "held_input",
             Self::Elsewhere { .. } => "elsewhere",
+            Self::Unrelated { .. } => "unrelated",
             Self::Rival { .. } => "rival",
             Self::Noise { .. } => "noise",
             Self::FewBranches { .. } => "few_branches",
@@ -185,11 +201,14 @@ impl Cause {
     /// The weightiest is told first, and its remedy is the next step.
     pub(super) fn weight(&self) -> f64 {
         match self {
+            Self::Doubted { .. } => 4.0,
             Self::Outside { share } if *share > OUTSIDE => 3.0,
             Self::LagLeft { .. } => 2.5,
             Self::OtherSpeed { late: true, .. } => 2.2,
             // A part that explains nearly all of the error is not there by chance.
             Self::OtherSpeed { late: false, .. } => 1.95,
+            // It asks whether these are input and output at all.
+            Self::Unrelated { .. } => 2.1,
             Self::Readings { share, .. } => 1.0 + share,
             Self::Part(part) => 1.0 + part.share,
             Self::Rival { .. } => 0.9,
@@ -213,9 +232,8 @@ pub(super) fn of_record(fit: &FitSummary, on_others: bool) -> Vec<Cause> {
     let percent = loads.and_then(|found| found["left_out_percent"].as_f64());
     let loads = percent.filter(|percent| *percent > USABLE && !on_others);
     let loads = loads.map(|percent| Cause::LoadsLeftOut { percent });
-    let few = branches_of(fit).filter(|_| !on_others);
-    let few = few.filter(|(_, different)| *different < FEW);
-    let causes = loads.into_iter().chain(few.map(few_branches));
+    let few = few_fitted(fit).filter(|_| !on_others);
+    let causes = loads.into_iter().chain(few);
     let easier = easier(fit).filter(|_| !on_others);
     causes.chain(easier).collect()
 }
@@ -248,6 +266,40 @@ pub(super) fn few_loops(fit: &FitSummary, recordings: &[Recording]) -> Option<Ca
     let (branches, different) = branches_of(fit)?;
     let here = different_branches(recordings.iter().map(|one| &one.input[..]));
     (different.max(here) <= TWO_LOOPS).then_some(few_branches((branches, different)))
+}
+
+/// A model of few branches, on recordings that it errs on.
+pub(super) fn few_fitted(fit: &FitSummary) -> Option<Cause> {
+    let few = branches_of(fit).filter(|(_, different)| *different < FEW);
+    few.map(few_branches)
+}
+
+/// Recordings whose output has little to do with what a model says, whatever its offset and gain.
+/// `rmse` is the error on what was not fitted, of a model that was fitted to them.
+pub(super) fn unrelated(
+    recordings: &[Recording],
+    modelled: &[f64],
+    rmse: Option<f64>,
+) -> Option<Cause> {
+    let measured = || recordings.iter().flat_map(|one| &one.output).copied();
+    if measured().count() != modelled.len() {
+        return None;
+    }
+    let (_, deviation) = mean_and_deviation(&measured().collect::<Vec<_>>());
+    let explained = correlation(measured(), modelled)?.powi(2);
+    let predicted = rmse.map_or(1.0, |rmse| 1.0 - (rmse / deviation).powi(2));
+    let share = explained.min(predicted).max(0.0);
+    (share < FOLLOWED).then_some(Cause::Unrelated { share })
+}
+
+/// Of two series that move; `None` where one does not.
+fn correlation(a: impl Iterator<Item = f64>, b: &[f64]) -> Option<f64> {
+    let a: Vec<f64> = a.collect();
+    let ((a_mean, a_deviation), (b_mean, b_deviation)) =
+        (mean_and_deviation(&a), mean_and_deviation(b));
+    let together = a.iter().zip(b).map(|(a, b)| (a - a_mean) * (b - b_mean));
+    let found = together.sum::<f64>() / (a.len() as f64 * a_deviation * b_deviation);
+    found.is_finite().then_some(found)
 }
 
 /// Recordings that were fitted and stand at few points, or at the same ones over and over.

@@ -14,8 +14,8 @@ pub(super) const USABLE: f64 = 5.0;
 /// The error counts, in percent of the range of the output, on data that the model was not fitted
 /// to. One step less where a simple predictor errs less. At most `Usable` where few branches or
 /// points that are unlike each other were recorded, loads left out are predicted badly, or what
-/// comes late was found at one speed. `Poor` where a fifth of the inputs is outside the plane or
-/// the output does not move.
+/// comes late was found at one speed. `Poor` where a fifth of the inputs is outside the plane, the
+/// output does not move, or hardly follows the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Grade {

@@ -19,11 +19,16 @@ impl Verdict {
             _ => None,
         });
         let percent = percent.max(fitted.unwrap_or_default());
-        // What a few numbers explain is no noise.
-        let explained = self
+        let unrelated = self
             .causes
             .iter()
-            .any(|cause| matches!(cause, Cause::Part(_) | Cause::Elsewhere { .. }));
+            .any(|cause| matches!(cause, Cause::Unrelated { .. }));
+        // What a few numbers explain is no noise. Nor is an output that does something else.
+        let explained = unrelated
+            || self
+                .causes
+                .iter()
+                .any(|cause| matches!(cause, Cause::Part(_) | Cause::Elsewhere { .. }));
         let by_error = match percent {
             _ if self.rmse <= OF_NOISE * self.noise && percent <= USABLE && !explained => {
                 Grade::Good
@@ -50,7 +55,7 @@ impl Verdict {
             few || unseen || matches!(cause, Cause::LoadsLeftOut { .. } | Cause::OneSpeed { .. })
         });
         self.grade = match (by_error, rival_wins) {
-            _ if outside => Grade::Poor,
+            _ if outside || unrelated => Grade::Poor,
             (Grade::Good, _) if guessed => Grade::Usable,
             (Grade::Good, true) => Grade::Usable,
             (Grade::Usable, true) => Grade::Poor,

@@ -33,7 +33,7 @@ use crate::rivals::{Rival, RivalKind, SMALL};
 use crate::series::Errors;
 use crate::series::coarse::noise_behind;
 use crate::series::noise::noise;
-use grade::GOOD;
+use grade::{GOOD, OF_NOISE};
 use std::borrow::Cow;
 use tested::{Tested, best_of, on_others};
 use tried::Tried;
@@ -198,6 +198,16 @@ impl Verdict {
         Ok(verdict)
     }
 
+    /// The same, where there are doubts about rows of what was fitted ([`crate::doubts`]): to mend
+    /// them comes before all else.
+    #[must_use]
+    pub fn doubting(mut self, doubts: usize) -> Self {
+        if doubts > 0 {
+            self.causes.insert(0, Cause::Doubted { doubts });
+        }
+        self
+    }
+
     /// What an evaluation says beside the outputs.
     fn add(&mut self, evaluation: &Evaluation) {
         self.causes.extend(cause::outside(evaluation));
@@ -276,6 +286,12 @@ impl Verdict {
         verdict.has_time = recordings.iter().all(|recording| recording.time.is_some());
         verdict.has_load = recordings.iter().all(|recording| recording.load.is_some());
         let percent = verdict.percent.unwrap_or(f64::INFINITY);
+        if percent > GOOD {
+            let rmse = Some(verdict.rmse).filter(|_| was_fitted);
+            verdict
+                .causes
+                .extend(cause::unrelated(recordings, output, rmse));
+        }
         if percent > SMALL {
             let parts = cause::of_parts(recordings, output, was_fitted);
             verdict.causes.extend(parts);
@@ -291,8 +307,10 @@ impl Verdict {
         });
         verdict.tried = Tried::by(model, recordings);
         if let Some(fit) = &model.fit {
+            let is_noise = verdict.rmse <= OF_NOISE * verdict.noise;
             verdict.causes.extend(match was_fitted {
                 true => cause::few_points(recordings),
+                false if percent > GOOD && !is_noise => cause::few_fitted(fit),
                 false => cause::few_loops(fit, recordings),
             });
         }

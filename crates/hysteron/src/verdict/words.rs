@@ -123,6 +123,10 @@ impl Verdict {
                 "{:.1} % of the inputs are outside the range that the model knows",
                 100.0 * share
             ),
+            Cause::Doubted { doubts } => format!(
+                "{} about the rows: what a model errs by on them tells nothing",
+                counted(*doubts, "doubt")
+            ),
             Cause::Readings { share, samples, .. } => format!(
                 "{:.0} % of the squared error is in {} out of line with neighbours or held",
                 100.0 * share,
@@ -177,6 +181,13 @@ impl Verdict {
                  this recording",
                 band_name(*sessions)
             ),
+            Cause::Unrelated { share } => format!(
+                "{} hardly follows {}: the model explains {:.0} % of its squared deviations, little \
+                 more than its mean",
+                self.output.name,
+                self.input.name,
+                100.0 * share
+            ),
             Cause::Rival { name, percent } => format!(
                 "{name} errs less ({percent:.2} %): the data do not determine the model, or it \
                  cannot follow them"
@@ -187,6 +198,9 @@ impl Verdict {
             ),
             Cause::FewBranches { branches: 1, .. } => {
                 "one branch was recorded: what other paths do is a guess".into()
+            }
+            Cause::FewBranches { different: 1, .. } => {
+                "all branches that were recorded repeat one: what other paths do is a guess".into()
             }
             Cause::FewBranches {
                 branches,
@@ -266,12 +280,21 @@ impl Verdict {
         let moves = self.causes.iter().find(|cause| {
             matches!(cause, Cause::Part(part) if matches!(part.kind, PartKind::Drift | PartKind::Late))
         });
+        // No offset helps where the unit is another one.
+        let odd = |cause: &&Cause| match cause {
+            Cause::Part(part) => part.kind == PartKind::Gain && is_odd(part),
+            _ => false,
+        };
         let weightiest = match first {
-            Some(Cause::Part(_)) => moves.or(first),
+            Some(Cause::Part(_)) => self.causes.iter().find(odd).or(moves).or(first),
             _ => first,
         };
         let is_good = self.grade == Grade::Good;
         match weightiest {
+            Some(Cause::Doubted { .. }) => Remedy::new(
+                "look at the rows in doubt, mend or leave out those that are wrong, and try again",
+                [],
+            ),
             _ if self.basis == Basis::Fitted && self.grade == Grade::Untested => {
                 match self.causes.iter().any(is_few) {
                     true => Remedy::new(
@@ -298,6 +321,11 @@ impl Verdict {
             Some(Cause::Outside { .. }) => Remedy::new(
                 "fit a recording that covers this range, or check the unit of the input",
                 [],
+            ),
+            Some(Cause::Unrelated { .. }) => Remedy::new(
+                "look whether these are input and output, and whether their rows belong together; a \
+                 loop with two wings (a butterfly) is fitted with {}",
+                [Setting::word("solver", "ols")],
             ),
             Some(Cause::Part(part)) => match part.kind {
                 PartKind::Gain if is_odd(part) => Remedy::new(

@@ -1,6 +1,6 @@
 //! Recordings in every format and dialect, and what is mended in them.
 
-use hysteron::{Columns, Memory, Recording, Repair, TableReader, TableWriter};
+use hysteron::{Columns, Memory, Origin, Recording, Repair, TableReader, TableWriter};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -328,4 +328,25 @@ fn a_table_in_memory_has_the_bytes_of_the_file() {
     let mut twice = TableWriter::in_memory("a.parquet", &Memory::new(1 << 24)).unwrap();
     twice.row(["u", "u"]).unwrap();
     assert!(twice.into_bytes().is_err());
+}
+
+/// What a simulated recording is written with tells so where it is read. Another column of that
+/// name does not.
+#[test]
+fn a_simulated_recording_stays_one() {
+    let mut recording = Recording::new(INPUT.to_vec(), OUTPUT.to_vec()).unwrap();
+    let file = tempfile::NamedTempFile::with_suffix(".csv").unwrap();
+    for origin in [Origin::Simulated, Origin::Measured] {
+        recording.origin = origin;
+        recording.write_csv(file.path()).unwrap();
+        let columns = Columns::new("input", "output");
+        let read = Recording::read(file.path(), columns, Repair::Refuse);
+        assert_eq!(read.unwrap().0.origin, origin);
+    }
+    let columns = Columns::new("T", "x");
+    for last in ["0", "1.5", "yes", ""] {
+        let text = format!("T,x,simulated\n20,0,1\n35,1,1\n50,4,{last}\n");
+        let (recording, _) = read(&text, columns, Repair::Refuse);
+        assert_eq!(recording.origin, Origin::Measured, "{last}");
+    }
 }

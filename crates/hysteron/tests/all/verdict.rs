@@ -22,7 +22,7 @@ fn model(weights: &[f64]) -> Model {
     Model::new(Operator::Mkp, plane, weights.to_vec(), 3.0, Sign::Positive).unwrap()
 }
 
-fn recording(model: &Model, change: impl Fn(usize, f64) -> f64) -> Recording {
+fn recording(model: &Model, mut change: impl FnMut(usize, f64) -> f64) -> Recording {
     let input = input(900);
     let output = model.simulate(&input).unwrap();
     let output = output
@@ -663,4 +663,89 @@ fn an_easy_part_is_no_proof_of_the_rest() {
             assert!(is_easy && verdict.grade != Grade::Good, "{verdict}");
         }
     }
+}
+
+/// An output that has nothing to do with the input, in any size and with any noise of the input: it
+/// is called so, and nothing is said of noise to be averaged. One that has, is not called so.
+#[test]
+fn an_output_that_does_not_follow_is_called_so() {
+    for seed in 0..12 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = model(&weights(&mut rng));
+        let clean = recording(&model, |_, y| y);
+        let (_, (low, high)) = clean.ranges();
+        let size = (high - low) * 10_f64.powi(rng.random_range(-3..4));
+        let mut walk = 0.0;
+        let output: Vec<f64> = clean
+            .input
+            .iter()
+            .map(|_| {
+                let step = size * rng.random_range(-1.0..1.0);
+                // White, or a bounded walk.
+                walk = 0.9 * walk + step;
+                if seed % 2 == 0 { step } else { walk }
+            })
+            .collect();
+        let noise = Recording::new(clean.input.clone(), output).unwrap();
+        let fitted = Fit::new().run(&noise).unwrap();
+        for verdict in [
+            Verdict::of_fit(&fitted, &noise).unwrap(),
+            judged(&model, &noise).0,
+        ] {
+            let names: Vec<&str> = verdict.causes.iter().map(Cause::name).collect();
+            assert_eq!(names.first(), Some(&"unrelated"), "seed {seed}: {verdict}");
+            assert!(!names.contains(&"noise"), "seed {seed}: {verdict}");
+            assert_eq!(verdict.grade, Grade::Poor, "seed {seed}");
+        }
+        let noisy = recording(&model, |_, y| {
+            y + (high - low) * rng.random_range(-0.2..0.2)
+        });
+        let (verdict, _) = judged(&model, &noisy);
+        let names: Vec<&str> = verdict.causes.iter().map(Cause::name).collect();
+        assert!(!names.contains(&"unrelated"), "seed {seed}: {verdict}");
+    }
+}
+
+/// A model of one loop errs elsewhere because it saw one loop, whatever else may be said.
+#[test]
+fn few_branches_are_told_of_another_recording_too() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    // A few operators anywhere: the outermost loop does not tell them apart.
+    let few: Vec<f64> = (0..78)
+        .map(|_| rng.random_range(-8.0_f64..1.0).max(0.0))
+        .collect();
+    let model = model(&few);
+    let loops = recording(&model, |_, y| y);
+    let rows = one_loop(&loops);
+    let one = Recording::new(loops.input[..rows].to_vec(), loops.output[..rows].to_vec()).unwrap();
+    let fitted = Fit::new().bootstrap(0).run(&one).unwrap();
+    let (verdict, evaluation) = judged(&fitted, &loops);
+    assert!(evaluation.forward.nrmse_percent.unwrap() > 1.0, "{verdict}");
+    let few = |cause: &Cause| matches!(cause, Cause::FewBranches { .. });
+    assert!(verdict.causes.iter().any(few), "{verdict}");
+}
+
+/// The rows from the start to the second reversal.
+fn one_loop(recording: &Recording) -> usize {
+    let turns = recording.input.windows(3).enumerate();
+    let mut turns = turns.filter(|(_, x)| (x[1] - x[0]) * (x[2] - x[1]) < 0.0);
+    turns.nth(1).map_or(recording.len(), |(n, _)| n + 2)
+}
+
+#[test]
+fn doubts_come_before_all_else() {
+    let model = model(&weights(&mut ChaCha8Rng::seed_from_u64(6)));
+    let recording = recording(&model, |_, y| 2.0 * y);
+    let (verdict, _) = judged(&model, &recording);
+    let same = verdict.clone().doubting(0);
+    assert_eq!(same, verdict);
+    let doubted = verdict.doubting(2);
+    assert_eq!(doubted.causes[0].name(), "doubted");
+    let lines = doubted.lines(|setting| setting.name.to_owned());
+    let next = &lines
+        .iter()
+        .find(|(heading, _)| *heading == "next")
+        .unwrap()
+        .1;
+    assert!(next.starts_with("look at the rows in doubt"), "{next}");
 }

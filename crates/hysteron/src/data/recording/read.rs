@@ -7,7 +7,7 @@ use crate::data::recording::repair::{Note, NoteKind, Repair};
 use crate::data::recording::samples::Samples;
 use crate::data::table::{Column, Memory, ReadOptions, TableReader};
 use crate::error::{Error, Place, Result};
-use crate::recording::{Origin, Quantity, Recording, Source};
+use crate::recording::{Quantity, Recording, Source};
 use crate::remedy::{Remedy, Setting};
 use crate::series::interpolate::interpolate;
 use bytes::Bytes;
@@ -270,6 +270,7 @@ fn read_parts(
         .map(|(kind, places)| Note::Rows { kind, places });
     let notes = remarks.chain(of_rows).collect();
     let others = samples.others.take();
+    let origin = samples.origin();
     let source = table.sha256()?.map(|sha256| Source::new(path, sha256));
     // Samples count as the rows of the file do: nothing is to be told.
     let plain = samples.places.count_from_one() && starts.is_empty();
@@ -293,7 +294,7 @@ fn read_parts(
             input_quantity: input_quantity.clone(),
             output_quantity: output_quantity.clone(),
             load_quantity: load_quantity.clone(),
-            origin: Origin::Measured,
+            origin,
             undone: None,
             source: source.clone().map(|source| Source {
                 places: (!plain).then(|| samples.places.part(begin..end)),

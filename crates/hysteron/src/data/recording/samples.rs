@@ -8,9 +8,11 @@ use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
 use crate::error::{Error, Place, Result};
 use crate::recording::gaps;
-use crate::recording::{Positions, RUN};
+use crate::recording::{Origin, Positions, RUN};
 use crate::remedy::{Remedy, Setting};
 
+/// The column that marks a recording of a simulated plant. It holds 1 in each row.
+pub(super) const MARK: &str = "simulated";
 /// Input, output, time and load.
 const SERIES: usize = 4;
 /// Rows for which memory is taken first. Tables of many recordings have short ones.
@@ -33,6 +35,8 @@ pub(super) struct Samples {
     /// The rows of a log whose reading its loop did not believe.
     held: Places,
     fault: Option<Error>,
+    /// Whether all rows are marked as simulated.
+    simulated: bool,
 }
 
 impl Samples {
@@ -46,12 +50,17 @@ impl Samples {
         (held, others): (Option<&HeldBack>, Option<Others>),
     ) -> Result<Self> {
         let mut samples = Self::none((asked.len(), timed), others);
+        let mark = table.header().iter().any(|name| name == MARK);
+        let mark = mark.then(|| table.column(MARK)).transpose()?;
+        samples.simulated = mark.is_some();
         let mut outputs = output.map(|output| output.iter());
         while table.advance()? {
             if held.is_some_and(|held| held.holds(table)) {
                 samples.held.push(table.row_place());
                 continue;
             }
+            // A column of that name with other numbers is something else.
+            samples.simulated &= mark.is_none_or(|mark| table.value(mark) == Some(1.0));
             samples.push(table, asked, outputs.as_mut().map(Iterator::next))?;
         }
         samples.ragged = table.ragged();
@@ -74,6 +83,15 @@ impl Samples {
             missing: Places::default(),
             held: Places::default(),
             fault: None,
+            simulated: false,
+        }
+    }
+
+    /// Whether they are measured or simulated.
+    pub(super) fn origin(&self) -> Origin {
+        match self.simulated {
+            true => Origin::Simulated,
+            false => Origin::Measured,
         }
     }
 

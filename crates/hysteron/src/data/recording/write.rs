@@ -1,6 +1,7 @@
 //! Writes recordings as tables.
 
 use crate::data::output::TableWriter;
+use crate::data::recording::samples::MARK;
 use crate::error::Result;
 use crate::recording::{Origin, Recording, no_recordings};
 use std::path::Path;
@@ -40,7 +41,7 @@ pub(crate) fn write_all<const N: usize>(
         Some(first.input_quantity.to_column()),
         Some(first.output_quantity.to_column()),
         first.load.as_ref().map(|_| first.load_quantity.to_column()),
-        simulated.then(|| "simulated".to_owned()),
+        simulated.then(|| MARK.to_owned()),
     ];
     let added = added.map(str::to_owned);
     table.row(names.iter().flatten().chain(&added))?;
