@@ -32,6 +32,7 @@ __all__ = [
     "ConfidenceSummary",
     "ConstantSummary",
     "CreepTerm",
+    "CutOff",
     "DeadBand",
     "Doubt",
     "Drift",
@@ -1404,6 +1405,25 @@ class Drift(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class CutOff(_Result):
+    """Where an output stands at an end of what its sensor reads: `AdaptedComparison.cut_off`.
+
+    Attributes
+    ----------
+    value : float
+        The value, in the output's unit.
+    times : int
+        How often the output came there.
+    samples : int
+        Number of such readings.
+    """
+
+    value: float
+    times: int
+    samples: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Stuck(_Result):
     """Where a channel stood still while the other one moved: an entry of `AdaptedComparison.stuck`.
 
@@ -1453,6 +1473,8 @@ class AdaptedComparison(_Result):
         How far weights and offset moved.
     stuck : tuple of Stuck
         Where a channel stood still; what was learned from there is undone.
+    cut_off : CutOff or None
+        Where the output is cut off though the model goes on: a sensor at its end.
     """
 
     whole: Compared
@@ -1467,6 +1489,7 @@ class AdaptedComparison(_Result):
     counts: OutcomeCounts
     drift: Drift
     stuck: tuple[Stuck, ...]
+    cut_off: CutOff | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -75,6 +75,17 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
 fn faults(args: &args::Adapt, adapted: &Adapted) -> Vec<String> {
     let frozen = |stuck| frozen(args, stuck);
     let mut faults: Vec<String> = adapted.stuck.iter().map(frozen).collect();
+    faults.extend(adapted.cut_off.map(|end| {
+        let output = &adapted.model.output;
+        format!(
+            "{} came to {} {} times and stayed there for {} readings while the input went on, and the \
+             model goes further: its sensor may end there, and the model has learned that end",
+            output.name,
+            output.text(end.value),
+            end.times,
+            end.samples
+        )
+    }));
     let far = 100.0 * adapted.drift.largest();
     if far > args.max_drift {
         faults.push(format!(
@@ -151,6 +162,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "late": adapted.late,
         "worse": adapted.worse,
         "stuck": adapted.stuck,
+        "cut_off": adapted.cut_off,
         "probation": adapted.probation,
         "again": adapted.again,
         "again_late": adapted.again_late,

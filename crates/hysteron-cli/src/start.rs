@@ -204,6 +204,14 @@ fn step_of(model: &Model, recordings: &[Recording]) -> Option<f64> {
     (model.is_timed() && step > 0.0).then_some(step)
 }
 
+/// An option with a value that may look like another one.
+fn option(name: &str, value: &str) -> String {
+    match value.starts_with('-') {
+        true => format!("--{name}={}", shell_word(value)),
+        false => format!("--{name} {}", shell_word(value)),
+    }
+}
+
 fn commands(
     args: &args::Begin,
     columns: Columns<'_>,
@@ -212,13 +220,13 @@ fn commands(
 ) -> Vec<String> {
     let file = shell_word(&args.file.display().to_string());
     let mut named = format!(
-        "--input {} --output {}",
-        shell_word(columns.input),
-        shell_word(columns.output)
+        "{} {}",
+        option("input", columns.input),
+        option("output", columns.output)
     );
     for (name, column) in [("time", columns.time), ("load", columns.load)] {
         if let Some(column) = column {
-            named += &format!(" --{name} {}", shell_word(column));
+            named += &format!(" {}", option(name, column));
         }
     }
     if args.repair.is_asked() {
@@ -233,10 +241,12 @@ fn commands(
     let dt = step.map_or(String::new(), |step| {
         format!(" --dt {}", text::number(step))
     });
+    // The exponents of curves over a load need not fit single precision.
+    let real = columns.load.map_or("", |_| " --real double");
     let mut commands = vec![
         format!("hysteron fit {file} {named} -o model.json"),
         format!("hysteron evaluate model.json {other} {named} --report report"),
-        format!("hysteron export c model.json{dt} -o model-c"),
+        format!("hysteron export c model.json{dt}{real} -o model-c"),
     ];
     if cfg!(feature = "studio") {
         commands.insert(0, format!("hysteron studio {file}"));

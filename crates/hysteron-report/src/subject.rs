@@ -85,7 +85,17 @@ pub(crate) fn verdict(verdict: Option<&Verdict>) -> Markup {
         .flat_map(|verdict| verdict.lines(Setting::typed));
     html! {
         div.wide { table.facts.verdict { @for (heading, text) in lines {
-            tr { th scope="row" { (heading) } td { (text) } }
+            tr { th scope="row" { (heading) } td { (told(heading, &text)) } }
         } } }
+    }
+}
+
+/// The grade stands out.
+fn told(heading: &str, text: &str) -> Markup {
+    match text.split_once(": ").filter(|_| heading == "verdict") {
+        Some((grade, rest)) => {
+            html! { strong class=(format!("grade {grade}")) { (grade) } ": " (rest) }
+        }
+        None => html! { (text) },
     }
 }

@@ -112,8 +112,8 @@ pub use remedy::{Remedy, Setting, SettingValue, counted};
 pub use rivals::{Rival, RivalKind};
 pub use series::noise::noise;
 pub use series::{
-    Errors, Headings, NOISE, Turning, branches, fair_range, filter, headings, mean_and_deviation,
-    range, remembered, usual_tolerance,
+    CutOff, Errors, Headings, NOISE, Turning, branches, fair_range, filter, headings,
+    mean_and_deviation, range, remembered, usual_tolerance,
 };
 pub use verdict::{Basis, Cause, ErrorPart, Grade, PartKind, Verdict, Worst, error_parts};
 

@@ -360,3 +360,33 @@ fn a_model_that_ended_worse_is_not_written_without_force() {
     );
     assert!(there("adapted.json"));
 }
+
+/// A model that knows more of the output is not bent to the end of a sensor, unless it is forced.
+/// What the model does not go beyond is a stop, and is followed.
+#[test]
+fn the_end_of_a_sensor_is_not_learned_unasked() {
+    let folder = wires();
+    let table = |limit: f64| {
+        let mut play = 20.0_f64;
+        let mut table = String::from("t,x,y\n");
+        for n in 0..1500 {
+            let x = 50.0 - 30.0 * (f64::from(n) * 0.05).cos();
+            play = play.clamp(x - 5.0, x + 5.0);
+            let noise = 1e-3 * (f64::from(n) * 12.9898).sin();
+            table += &format!("{n},{x},{}\n", (play * 0.2 + noise).min(limit));
+        }
+        fs::write(folder.path().join("after.csv"), table).unwrap();
+    };
+    table(12.0);
+    let line = format!("{ADAPT} --json");
+    let done = run(folder.path(), &line);
+    assert_eq!(done.status.code(), Some(1));
+    let said = text(&done.stderr);
+    assert!(said.contains("its sensor may end there"), "{said}");
+    assert!(!folder.path().join("adapted.json").exists());
+    let said = json(folder.path(), &format!("{ADAPT} --force"));
+    assert_eq!(said["cut_off"]["value"], 12.0);
+    table(f64::INFINITY);
+    let said = json(folder.path(), &format!("{ADAPT} --force"));
+    assert!(said["cut_off"].is_null());
+}

@@ -3,7 +3,7 @@
 use super::{Drift, EstimatorOptions, OutcomeCounts, ShiftFound, Stuck};
 use crate::model::Model;
 use crate::recording::Recording;
-use crate::series::Errors;
+use crate::series::{CutOff, Errors};
 use hysteron_core::Outcome;
 use serde::Serialize;
 
@@ -62,6 +62,9 @@ pub struct Adapted {
     pub drift: Drift,
     /// Where a channel stood still. What was learned from there is undone.
     pub stuck: Vec<Stuck>,
+    /// Where the output is cut off, though the model goes on by more than 1 % of its range: a
+    /// sensor at its end. The model has learned that end. `None` where it is not.
+    pub cut_off: Option<CutOff>,
     /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty
     /// for the other learners. *trend* is the refit, and half as far beyond it as it moved in a
     /// cycle.

@@ -7,6 +7,7 @@ use super::{
 use crate::error::Result;
 use crate::model::{FitSummary, Model, Start};
 use crate::recording::{Origin, Recording};
+use crate::series::clipped::clipped;
 use crate::series::{Errors, mean_and_deviation};
 use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde_json::json;
@@ -150,6 +151,11 @@ impl Learned {
         ));
         let drift = Drift::between(&offline, &last, self.shift.as_ref());
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
+        let (off, on) = offline.output_range();
+        let beyond = offline.usual_tolerance();
+        let (least, most) = (off.min(on) + beyond, off.max(on) - beyond);
+        let cut_off = clipped(&joined.input, &joined.output);
+        let cut_off = cut_off.filter(|end| least < end.value && end.value < most);
         // A load goes on moving: its last shift is not that of the samples before.
         let stays = self.shift.is_none();
         Ok(Adapted {
@@ -161,6 +167,7 @@ impl Learned {
                     && !is_of_use(latest.as_ref(), again_late.as_ref()),
             drift,
             stuck,
+            cut_off,
             model: last,
             probation: self.probation,
             output_model,

@@ -3,6 +3,7 @@
 use crate::series::lost::equal_runs;
 use crate::series::noise::median_of;
 use crate::series::spread::range;
+use serde::Serialize;
 use std::ops::Range;
 
 /// Fewer equal readings in a row may be chance.
@@ -22,16 +23,19 @@ const STEPS: usize = 6;
 
 /// Readings at an end of the output's range, which the output reaches again and again, and keeps to
 /// the last digit while the input goes on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Clipped {
-    pub(crate) value: f64,
-    pub(crate) times: usize,
-    pub(crate) samples: usize,
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CutOff {
+    /// The value, in the output's unit.
+    pub value: f64,
+    /// How often the output came there.
+    pub times: usize,
+    /// Number of such readings.
+    pub samples: usize,
 }
 
 /// The end of the output that has more such readings, if one has them. A mechanical stop looks the
 /// same: readings do not tell.
-pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<Clipped> {
+pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<CutOff> {
     let (low, high) = range(output);
     // A force without contact, or a closed valve, is zero by itself.
     let is_end = |value: f64| value == low && low != 0.0 || value == high;
@@ -58,7 +62,7 @@ pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<Clipped> {
         let runs = runs.iter().filter(|run| output[run.start] == value);
         let samples = runs.clone().map(Range::len).sum();
         let times = runs.count();
-        Clipped {
+        CutOff {
             value,
             times,
             samples,

@@ -28,6 +28,7 @@ pub(crate) mod spread;
 pub(crate) mod test_series;
 mod turning;
 
+pub use clipped::CutOff;
 pub use errors::Errors;
 pub use fair::fair_range;
 pub(crate) use fair::fair_range_of_all;
