@@ -13,8 +13,19 @@ const TIMES: usize = 2;
 /// The input goes on by this share of its range before it turns. In a dead band, an output rests
 /// from where the input turns.
 const GOES_ON: f64 = 0.02;
-/// An output that rests elsewhere too, with more than this share of its samples, goes by steps.
+/// An output that rests elsewhere too while the input goes on, with more than this share of its
+/// samples, goes by steps.
 const RESTS: f64 = 0.02;
+/// With more equal neighbours than this share, the output is read in coarse steps.
+const COARSE: f64 = 0.02;
+/// Then its way is looked at over so many samples that it is usually as many of these steps. A
+/// single one says nothing of how fast it moves.
+const WAY: f64 = 8.0;
+/// With fewer of them over the range of the output, the last one before an end is not told from a
+/// stop.
+const FINE: f64 = 100.0;
+/// That many samples are at most this share of the recording.
+const LONGEST: usize = 50;
 /// A material comes to its end slowly, and leaves it slowly. What is cut off has steps of this
 /// share of the usual one there; of two, one may be cut itself.
 const KINK: f64 = 0.3;
@@ -39,13 +50,6 @@ pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<CutOff> {
     let (low, high) = range(output);
     // A force without contact, or a closed valve, is zero by itself.
     let is_end = |value: f64| value == low && low != 0.0 || value == high;
-    let equal = output.windows(2).filter(|pair| pair[0] == pair[1]);
-    let rests = equal.filter(|pair| !is_end(pair[0])).count();
-    if rests as f64 > RESTS * output.len() as f64 {
-        return None;
-    }
-    let steps = output.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let usual = median_of(steps.filter(|step| *step > 0.0).collect());
     let (least, most) = range(input);
     let goes_on = |run: &Range<usize>| {
         let at = input[run.start];
@@ -53,11 +57,16 @@ pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<CutOff> {
         let beyond = input[run.clone()].iter().map(|x| (x - at) * way.signum());
         way != 0.0 && beyond.fold(0.0, f64::max) >= GOES_ON * (most - least)
     };
-    let is_cut = |run: &Range<usize>| {
-        let stays = run.len() >= SHORTEST && is_end(output[run.start]);
-        stays && goes_on(run) && kink(output, run) >= KINK * usual
-    };
-    let runs: Vec<Range<usize>> = equal_runs(output).filter(is_cut).collect();
+    let stays = |run: &Range<usize>| run.len() >= SHORTEST && goes_on(run);
+    let (runs, rests): (Vec<_>, Vec<_>) = equal_runs(output)
+        .filter(stays)
+        .partition(|run| is_end(output[run.start]));
+    if rests.iter().map(Range::len).sum::<usize>() as f64 > RESTS * output.len() as f64 {
+        return None;
+    }
+    let (samples, usual) = usual_way(output)?;
+    let is_cut = |run: &Range<usize>| kink(output, run, samples) >= KINK * usual;
+    let runs: Vec<Range<usize>> = runs.into_iter().filter(is_cut).collect();
     let at = |value: f64| {
         let runs = runs.iter().filter(|run| output[run.start] == value);
         let samples = runs.clone().map(Range::len).sum();
@@ -73,14 +82,53 @@ pub(crate) fn clipped(input: &[f64], output: &[f64]) -> Option<CutOff> {
     ends.max_by_key(|end| end.samples)
 }
 
-/// The step with which a series comes to a run, or with which it leaves it, whichever is smaller.
-fn kink(values: &[f64], run: &Range<usize>) -> f64 {
+/// The usual way of a series over some samples, and their number; 1 where it is not read in coarse
+/// steps. `None` for a series that does not move, or has few of them.
+fn usual_way(values: &[f64]) -> Option<(usize, f64)> {
+    let ways = |samples: usize| -> Vec<f64> {
+        let pairs = values.iter().zip(values.iter().skip(samples));
+        let ways = pairs.map(|(a, b)| (b - a).abs());
+        ways.filter(|way| *way > 0.0).collect()
+    };
+    let steps = ways(1);
+    let finest = steps.iter().copied().reduce(f64::min)?;
+    let equal = (values.len() - 1 - steps.len()) as f64;
+    if equal <= COARSE * values.len() as f64 {
+        return Some((1, median_of(steps)));
+    }
+    let (low, high) = range(values);
+    if high - low < FINE * finest {
+        return None;
+    }
+    let mut samples = 1;
+    loop {
+        let usual = median_of(ways(samples));
+        if usual >= WAY * finest || samples >= values.len() / LONGEST {
+            return Some((samples, usual));
+        }
+        samples *= 2;
+    }
+}
+
+/// The way over so many samples with which a series comes to a run, or with which it leaves it,
+/// whichever is smaller. Of two steps, one may be cut itself.
+fn kink(values: &[f64], run: &Range<usize>, samples: usize) -> f64 {
     let largest = |pairs: &[f64]| {
         let steps = pairs.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         steps.fold(0.0, f64::max)
     };
-    let before = largest(&values[run.start.saturating_sub(2)..=run.start]);
-    let after = largest(&values[run.end - 1..values.len().min(run.end + 2)]);
+    let (first, last) = (run.start, run.end - 1);
+    let [before, after] = match samples {
+        1 => [
+            largest(&values[first.saturating_sub(2)..=first]),
+            largest(&values[last..values.len().min(last + 3)]),
+        ],
+        _ => [
+            first.saturating_sub(samples),
+            (last + samples).min(values.len() - 1),
+        ]
+        .map(|n| (values[n] - values[first]).abs()),
+    };
     match run.end == values.len() {
         true => before,
         false => before.min(after),
@@ -116,6 +164,22 @@ mod tests {
             let low: Vec<f64> = clean.iter().map(|y| y.max(-limit)).collect();
             let found = clipped(&input, &low).map(|found| (found.value, found.times));
             assert_eq!(found, Some((-limit, 9)));
+        }
+    }
+
+    /// A converter reads in steps. Some of them are in a row where the output moves, too.
+    #[test]
+    fn what_is_cut_off_is_found_behind_a_converter() {
+        let (input, clean) = loops(1e-3);
+        for steps in [200.0, 1000.0, 4000.0] {
+            let read = |y: f64| (y * steps / 2.0).round() / (steps / 2.0);
+            for limit in [0.3, 0.6] {
+                let high: Vec<f64> = clean.iter().map(|y| read(y.min(limit))).collect();
+                let found = clipped(&input, &high).map(|found| (found.value, found.times));
+                assert_eq!(found, Some((read(limit), 10)), "{steps} steps");
+                let whole: Vec<f64> = clean.iter().map(|y| read(*y)).collect();
+                assert_eq!(clipped(&input, &whole), None, "{steps} steps");
+            }
         }
     }
 
