@@ -91,14 +91,20 @@ fn tables_are_simulated_and_inverted_behind_a_dead_time_in_each_segment() {
                 assert_eq!(shifted[n], plain[given], "{dt} {time}: row {n}");
             }
         }
-        for name in ["input_model", "status"] {
-            let [plain, early] =
-                ["plain", "late"].map(|n| column(folder, &format!("{n}-in.csv"), name));
-            for segment in segments() {
-                for n in segment.clone() {
-                    let wanted = (n + late).min(segment.end - 1);
-                    assert_eq!(early[n], plain[wanted], "{dt} {time}: {name} in row {n}");
-                }
+        let of =
+            |name: &str| ["plain", "late"].map(|n| column(folder, &format!("{n}-in.csv"), name));
+        let [plain, early] = of("input_model");
+        let [plain_status, status] = of("status");
+        for segment in segments() {
+            for n in segment.clone() {
+                let wanted = (n + late).min(segment.end - 1);
+                assert_eq!(early[n], plain[wanted], "{dt} {time}: row {n}");
+                // No input of the table acts on the first rows.
+                let expected = match plain_status[n].as_str() {
+                    "ok" if n - segment.start < late => "limited",
+                    own => own,
+                };
+                assert_eq!(status[n], expected, "{dt} {time}: row {n}");
             }
         }
     }

@@ -37,10 +37,10 @@ pub struct Invert<'a> {
 }
 
 /// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
-/// wanted output, from `state`. It is given early by the dead time of the model, so its status and
-/// the other columns are of a row so much later. For a model with a thermal body the input is the
-/// drive to hold since the row before, and `temperature_model` follows it. A model that knows how
-/// far it errs ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the
+/// wanted output, from `state`. It is given early by the dead time of the model. Status and bounds
+/// are those of the row's own target: the first ones are [`Status::Limited`], because no input of
+/// the table acts so soon. For a model with a thermal body the input is the drive to hold since the
+/// row before, and `temperature_model` follows it. A model that knows how far it errs ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the
 /// output may really be with this input, also where the status is `ok`. Where the clock goes back
 /// the model begins from `state` again ([`Around::repair`]). `out` is finished at the end.
 /// `progress` gets the bytes read.
@@ -223,16 +223,36 @@ struct Solving<'m> {
     counts: Counts,
 }
 
-/// What is known of the dead time: each input is given early by it. So the solutions of the first
-/// rows come before the table, and the last one is held at its end.
-#[derive(Debug, Clone, Copy, Default)]
+/// What is known of the dead time: each input is given early by it. So the inputs of the first rows
+/// come before the table, and the last one is held at its end.
+#[derive(Debug, Clone, Default)]
 struct Early {
     /// Rows; `None` before the first one, whose clock tells how many.
     rows: Option<usize>,
-    /// Solutions left out so far.
+    /// Number of solutions of this recording so far, up to these rows.
     passed: usize,
-    /// The last solution.
-    last: Option<([f64; 4], usize, Status)>,
+    /// What rows say of their targets whose input comes with a later one.
+    waiting: VecDeque<(Option<[f64; 2]>, Status)>,
+    /// The last input, and the temperature behind it.
+    last: (f64, Option<f64>),
+}
+
+impl Early {
+    /// Writes the next row with the last input.
+    fn write(&mut self, cells: &mut AddedCells) {
+        let Some((bounds, status)) = self.waiting.pop_front() else {
+            return;
+        };
+        let (input, temperature) = self.last;
+        let mut numbers = [input, 0.0, 0.0, 0.0];
+        let mut count = 1;
+        for number in temperature.into_iter().chain(bounds.into_iter().flatten()) {
+            numbers[count] = number;
+            count += 1;
+        }
+        cells.push(&numbers[..count]);
+        cells.words.push(status.name());
+    }
 }
 
 /// Follows the inputs found, and says where the output may really be.
@@ -301,14 +321,10 @@ impl Solving<'_> {
         while let Some((wanted, asked)) = self.preview.as_mut().and_then(Preview::next) {
             self.solve(wanted, asked, cells)?;
         }
-        let Early { passed, last, .. } = self.early;
-        (self.early.passed, self.early.last) = (0, None);
-        if let Some((numbers, count, status)) = last {
-            for _ in 0..passed {
-                cells.push(&numbers[..count]);
-                cells.words.push(status.name());
-            }
+        while !self.early.waiting.is_empty() {
+            self.early.write(cells);
         }
+        self.early.passed = 0;
         Ok(())
     }
 
@@ -318,29 +334,29 @@ impl Solving<'_> {
             Some(preview) => preview.step(&self.inverse, &mut self.state, wanted, asked)?,
             None => self.inverse.step(&mut self.state, wanted)?,
         };
+        let too_soon = self.early.passed < self.early.rows.unwrap_or_default();
+        let status = match status {
+            Status::Ok if too_soon => Status::Limited,
+            status => status,
+        };
         self.counts.add(status);
-        let mut numbers = [input, 0.0, 0.0, 0.0];
-        let mut count = 1;
-        if self.heated {
-            numbers[1] = self.state.temperature();
-            count = 2;
-        }
-        if let Some(around_output) = &mut self.around_output {
-            let Wanted { dt, load, .. } = wanted;
-            let (output, half) = around_output.step(Sample { input, dt, load })?;
-            let widest = self.counts.half_width.unwrap_or_default();
-            self.counts.half_width = Some(widest.max(half));
-            numbers[count..count + 2].copy_from_slice(&[output - half, output + half]);
-            count += 2;
-        }
+        let bounds = match &mut self.around_output {
+            None => None,
+            Some(around_output) => {
+                let Wanted { dt, load, .. } = wanted;
+                let (output, half) = around_output.step(Sample { input, dt, load })?;
+                let widest = self.counts.half_width.unwrap_or_default();
+                self.counts.half_width = Some(widest.max(half));
+                Some([output - half, output + half])
+            }
+        };
         let early = &mut self.early;
-        early.last = Some((numbers, count, status));
-        if early.passed < early.rows.unwrap_or_default() {
-            early.passed += 1;
-            return Ok(());
+        early.last = (input, self.heated.then(|| self.state.temperature()));
+        early.waiting.push_back((bounds, status));
+        match too_soon {
+            true => early.passed += 1,
+            false => early.write(cells),
         }
-        cells.push(&numbers[..count]);
-        cells.words.push(status.name());
         Ok(())
     }
 }
