@@ -78,8 +78,8 @@ fn faults(args: &args::Adapt, adapted: &Adapted) -> Vec<String> {
     faults.extend(adapted.cut_off.map(|end| {
         let output = &adapted.model.output;
         format!(
-            "{} came to {} {} times and stayed there for {} readings while the input went on, and the \
-             model goes further: its sensor may end there, and the model has learned that end",
+            "{} came to {} {} times and stayed there for {} readings while the input went on, \
+             and the model goes further: its sensor may end there, and the model has learned that end",
             output.name,
             output.text(end.value),
             end.times,

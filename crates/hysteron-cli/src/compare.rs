@@ -88,13 +88,13 @@ impl Compared<'_> {
     fn best_first<'a>(
         &'a self,
         names: &'a [String],
-    ) -> impl Iterator<Item = (&'a String, &'a Forward, &'a Verdict)> {
+    ) -> Vec<(&'a String, &'a Forward, &'a Verdict)> {
         let runs = names.iter().zip(&self.runs).zip(&self.verdicts);
         let mut runs: Vec<_> = runs
             .map(|((name, run), verdict)| (name, run, verdict))
             .collect();
         runs.sort_by(|a, b| a.1.errors.rmse.total_cmp(&b.1.errors.rmse));
-        runs.into_iter()
+        runs
     }
 }
 
@@ -103,7 +103,8 @@ fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> R
     let typed = Typed::now()?;
     let mut pages = Vec::new();
     for (n, compared) in all.iter().enumerate() {
-        let models: Vec<NamedForward<'_>> = (compared.best_first(names))
+        let models = compared.best_first(names).into_iter();
+        let models: Vec<NamedForward<'_>> = models
             .map(|(name, forward, verdict)| NamedForward {
                 name,
                 forward,
@@ -158,10 +159,11 @@ fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
             "% of range",
             "samples",
         ])];
-        let best = compared.best_first(names).next().map(|(name, _, verdict)| {
+        let runs = compared.best_first(names);
+        let best = runs.first().map(|(name, _, verdict)| {
             format!("\n\nthe best is {name}\n{}", text::verdict(verdict))
         });
-        for (name, run, _) in compared.best_first(names) {
+        for (name, run, _) in runs {
             let quantity = &compared.recordings[0].output_quantity;
             let mut row = text::errors(name, &run.errors, quantity);
             let seen = match (run.was_fitted, run.seen_for_band) {

@@ -2,7 +2,6 @@
 
 use crate::columns::{Given, Named};
 use crate::made::Typed;
-use crate::remedy::say_doubts;
 use crate::terminal::{Result, print, say};
 use crate::{args, model, prepare, recording, text};
 use hysteron::{Errors, Evaluation, Grade, InverseRun, Quantity, Recording, Verdict};
@@ -37,13 +36,10 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let mut verdict = Verdict::of_evaluation(&model, &recordings, &evaluation)?;
     // An error may be one of the rows. They are not looked at for nothing.
     if verdict.grade != Grade::Good && !args.prepare.prepare {
-        let mut count = 0;
-        for (n, recording) in recordings.iter().enumerate() {
-            let doubts = hysteron::doubts(recording)?;
-            say_doubts(&doubts, &recording::which(n, recordings.len()));
-            count += doubts.len();
-        }
-        verdict = verdict.doubting(count);
+        let count = recordings.len();
+        let each = recordings.iter().enumerate();
+        let doubts = each.map(|(n, one)| prepare::doubts_said(one, &recording::which(n, count)));
+        verdict = verdict.doubting(doubts.sum::<Result<usize>>()?);
     }
     if let Some(mut folder) = folder {
         let title = format!("{} on {}", args.model.display(), args.data.display());

@@ -139,17 +139,23 @@ pub(crate) fn before_fit(
 ) -> Result<BeforeFit> {
     let (recording, report) = asked_for(recording, args, which)?;
     let doubts = match report {
-        None => hysteron::doubts(&recording)?,
+        None => doubts_said(&recording, which)?,
         // With the preparation they are refused.
-        Some(_) => Vec::new(),
+        Some(_) => 0,
     };
-    say_doubts(&doubts, which);
     Ok(BeforeFit {
         rate: hysteron::rate_dependence(&recording)?,
-        doubts: doubts.len(),
+        doubts,
         recording,
         report,
     })
+}
+
+/// Says what in a recording is not to be believed; returns the number of doubts.
+pub(crate) fn doubts_said(recording: &Recording, which: &str) -> Result<usize> {
+    let doubts = hysteron::doubts(recording)?;
+    say_doubts(&doubts, which);
+    Ok(doubts.len())
 }
 
 /// Says how the loops of recordings depend on rate, if their model does not follow that.
@@ -203,8 +209,7 @@ fn judged_line(judged: &Judged, output: &Quantity) -> String {
     let samples = hysteron::counted(judged.samples, "sample");
     let verdict = if judged.kept { "taken" } else { "not taken" };
     match (judged.before, judged.after) {
-        // No model of noisy readings tells what they would be without.
-        (Some(before), Some(after)) if step.starts_with("low-pass") => format!(
+        (Some(before), Some(after)) if judged.is_on_simulated() => format!(
             "{step}: {verdict}. On a simulated recording like this one, with this noise, it leaves \
              {} of it, of {}",
             output.text(after),

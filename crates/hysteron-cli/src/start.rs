@@ -133,7 +133,7 @@ fn unclear(args: &args::Begin, roles: &Roles) -> Box<dyn Error> {
             .or_else(|| names.find(|name| !taken.contains(name)));
         if let Some(name) = name {
             taken.push(name);
-            named += &format!(" --{role} {}", shell_word(name));
+            named += &format!(" {}", option(role, name));
         }
     }
     let file = shell_word(&args.file.display().to_string());

@@ -93,8 +93,8 @@ impl fmt::Display for Advice {
                 range: (low, high),
             } => write!(
                 f,
-                "{inputs} of {samples} inputs lie outside the active range {} to {} and were clipped \
-                 to its ends",
+                "{inputs} of {samples} inputs lie outside the active range {} to {} and were \
+                 clipped to its ends",
                 Quantity::default().text(*low),
                 Quantity::default().text(*high)
             ),

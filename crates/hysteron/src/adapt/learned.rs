@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::model::{FitSummary, Model, Start};
 use crate::recording::{Origin, Recording};
 use crate::series::clipped::clipped;
-use crate::series::{Errors, mean_and_deviation};
+use crate::series::{CutOff, Errors, mean_and_deviation};
 use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde_json::json;
 use std::ops::Range;
@@ -151,11 +151,6 @@ impl Learned {
         ));
         let drift = Drift::between(&offline, &last, self.shift.as_ref());
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
-        let (off, on) = offline.output_range();
-        let beyond = offline.usual_tolerance();
-        let (least, most) = (off.min(on) + beyond, off.max(on) - beyond);
-        let cut_off = clipped(&joined.input, &joined.output);
-        let cut_off = cut_off.filter(|end| least < end.value && end.value < most);
         // A load goes on moving: its last shift is not that of the samples before.
         let stays = self.shift.is_none();
         Ok(Adapted {
@@ -167,7 +162,7 @@ impl Learned {
                     && !is_of_use(latest.as_ref(), again_late.as_ref()),
             drift,
             stuck,
-            cut_off,
+            cut_off: inside(&offline, clipped(&joined.input, &joined.output)),
             model: last,
             probation: self.probation,
             output_model,
@@ -259,6 +254,15 @@ impl EstimatorOptions {
             }),
         }
     }
+}
+
+/// The end of a sensor that the model goes beyond. Where the model ends as well, it may be a stop,
+/// which is to be learned.
+fn inside(model: &Model, end: Option<CutOff>) -> Option<CutOff> {
+    let (off, on) = model.output_range();
+    let beyond = model.usual_tolerance();
+    let (least, most) = (off.min(on) + beyond, off.max(on) - beyond);
+    end.filter(|end| least < end.value && end.value < most)
 }
 
 /// The options as a JSON object: those of the method, and those that guard against bad readings.

@@ -17,8 +17,9 @@ const WELL: f64 = 1.0;
 /// With a body, both errors have to be at most this part of those without it: where whole branches
 /// were left out; and where there are so few that parts of them were, where a lag or a ring stands
 /// in its place, or where the input had one speed. A body smooths as a lag does, and gains a little
-/// where only the lag is true; at one speed it widens a loop that the operators may have: two of
-/// plants without heat erred 4.4 and 7.5 % elsewhere with a body, and 1.9 and 1.6 % without.
+/// where only the lag is true. At one speed it widens a loop that the operators could have as well:
+/// models of two plants that nothing heats erred 4.4 and 7.5 % on another recording with a body, and
+/// 1.9 and 1.6 % without.
 const WORTH: f64 = 0.9;
 const CLEAR_WORTH: f64 = 0.5;
 

@@ -47,6 +47,18 @@ pub struct Judged {
     pub kept: bool,
 }
 
+/// The low-passes of input and output, as steps.
+pub(super) const LOW_PASSES: [&str; 2] = ["low-pass of the input", "low-pass of the output"];
+
+impl Judged {
+    /// Whether the errors are those on a simulated recording like this one: a low-pass is judged so,
+    /// because no model of noisy readings tells what they would be without noise.
+    #[must_use]
+    pub fn is_on_simulated(&self) -> bool {
+        LOW_PASSES.contains(&self.step)
+    }
+}
+
 /// Judges the steps of one recording, each after those that were kept.
 pub(super) struct Judge<'a> {
     measured: &'a Recording,

@@ -49,7 +49,7 @@ use crate::series::noise::noise;
 use crate::series::range;
 use alike::Alike;
 use change::Change;
-use judge::Judge;
+use judge::{Judge, LOW_PASSES};
 
 /// Prepares a recording for [`crate::Fit`] and reports what was done, and what each step gained. It
 /// removes spikes, resamples and smooths if the noise requires it, undoes a sensor's lag on
@@ -212,10 +212,7 @@ fn filter(
     }
     let mut alike: Option<Alike> = None;
     let mut done = [None, None];
-    for (n, name) in ["low-pass of the input", "low-pass of the output"]
-        .into_iter()
-        .enumerate()
-    {
+    for (n, name) in LOW_PASSES.into_iter().enumerate() {
         let (low, high) = range(series(work, n));
         if how == Step::Auto && sigma[n] <= smooth::NEGLIGIBLE * (high - low) {
             continue;

@@ -205,10 +205,10 @@ impl Cause {
             Self::Outside { share } if *share > OUTSIDE => 3.0,
             Self::LagLeft { .. } => 2.5,
             Self::OtherSpeed { late: true, .. } => 2.2,
-            // A part that explains nearly all of the error is not there by chance.
-            Self::OtherSpeed { late: false, .. } => 1.95,
             // It asks whether these are input and output at all.
             Self::Unrelated { .. } => 2.1,
+            // A part that explains nearly all of the error is not there by chance.
+            Self::OtherSpeed { late: false, .. } => 1.95,
             Self::Readings { share, .. } => 1.0 + share,
             Self::Part(part) => 1.0 + part.share,
             Self::Rival { .. } => 0.9,

@@ -182,8 +182,8 @@ impl Verdict {
                 band_name(*sessions)
             ),
             Cause::Unrelated { share } => format!(
-                "{} hardly follows {}: the model explains {:.0} % of its squared deviations, little \
-                 more than its mean",
+                "{} hardly follows {}: the model explains {:.0} % of its squared deviations, \
+                 little more than its mean",
                 self.output.name,
                 self.input.name,
                 100.0 * share
@@ -323,8 +323,8 @@ impl Verdict {
                 [],
             ),
             Some(Cause::Unrelated { .. }) => Remedy::new(
-                "look whether these are input and output, and whether their rows belong together; a \
-                 loop with two wings (a butterfly) is fitted with {}",
+                "look whether these are input and output, and whether their rows belong together; \
+                 a loop with two wings (a butterfly) is fitted with {}",
                 [Setting::word("solver", "ols")],
             ),
             Some(Cause::Part(part)) => match part.kind {

@@ -40,10 +40,11 @@ pub struct Invert<'a> {
 /// wanted output, from `state`. It is given early by the dead time of the model. Status and bounds
 /// are those of the row's own target: the first ones are [`Status::Limited`], because no input of
 /// the table acts so soon. For a model with a thermal body the input is the drive to hold since the
-/// row before, and `temperature_model` follows it. A model that knows how far it errs ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the
-/// output may really be with this input, also where the status is `ok`. Where the clock goes back
-/// the model begins from `state` again ([`Around::repair`]). `out` is finished at the end.
-/// `progress` gets the bytes read.
+/// row before, and `temperature_model` follows it. A model that knows how far it errs
+/// ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the output may
+/// really be with this input, also where the status is `ok`. Where the clock goes back the model
+/// begins from `state` again ([`Around::repair`]). `out` is finished at the end. `progress` gets the
+/// bytes read.
 ///
 /// # Errors
 /// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;

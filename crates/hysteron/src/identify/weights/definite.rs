@@ -1,8 +1,8 @@
 //! The Cholesky factor of a dense matrix, made where its elements are put.
 //!
-//! Searches factor some hundred matrices for a fit, each of a few hundred columns. There copying is
-//! as dear as the arithmetic: so only what is at and below the diagonal is asked for, once, by whole
-//! columns.
+//! Searches factor some hundred matrices for a fit, each of a few hundred columns. At that size,
+//! copying takes as long as the arithmetic. So only what is at and below the diagonal is asked for,
+//! once, by whole columns.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::{factor, solve};

@@ -4,8 +4,8 @@
 //! regressor of one recording without forming it; `regressor` combines recordings, starts and
 //! loads. `units` divides the samples into branches or parts of them; `sums` and `unit_sums` are
 //! products of groups of samples, from which fits and their errors follow without the samples.
-//! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting`, `cholesky` and `definite`; `nested` says where a search begins. With many
+//! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal equations
+//! with `nnls`, `pivoting`, `cholesky` and `definite`; `nested` says where a search begins. With many
 //! levels the Gram matrix is kept sparse, over Everett corners: `layout`, `corner_gram`,
 //! `corner_system` and `grid_factor`; `coarse` says where their search begins. `room` limits the
 //! memory. `again` fits the same inputs to other outputs.
