@@ -3,7 +3,7 @@
 use crate::made::Typed;
 use crate::terminal::{Result, print};
 use crate::{args, evaluate, text};
-use hysteron::{Errors, InverseRun};
+use hysteron::{Errors, InverseRun, Verdict};
 use hysteron_files::AtomicFolder;
 use hysteron_report::{Report, Shown};
 use hysteron_sim::rig::{Experiment, Reproduction};
@@ -32,6 +32,11 @@ pub(crate) fn run(args: &args::Demo) -> Result<()> {
             model: &demo.model,
             recordings: demo.prepared[1].as_ref(),
             evaluation: &demo.evaluation,
+            verdict: Some(&Verdict::of_evaluation(
+                &demo.model,
+                &demo.prepared[1],
+                &demo.evaluation,
+            )?),
         },
         made: typed.made(),
     };

@@ -50,6 +50,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
                 model: &model,
                 recordings: &recordings,
                 evaluation: &evaluation,
+                verdict: Some(&verdict),
             },
             made: typed.made(),
         };

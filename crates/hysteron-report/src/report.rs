@@ -9,7 +9,7 @@ use crate::png;
 use crate::track::Tracking;
 use crate::{evaluation, fleet, models, track};
 use hysteron::Destination;
-use hysteron::{Evaluation, FleetRow, Model, Norm, Recording};
+use hysteron::{Evaluation, FleetRow, Model, Norm, Recording, Verdict};
 use hysteron_files::{AtomicFile, AtomicFolder, Own};
 use std::path::{Path, PathBuf};
 
@@ -68,6 +68,8 @@ pub enum Shown<'a> {
         recordings: &'a [Recording],
         /// How it did.
         evaluation: &'a Evaluation,
+        /// Whether that is good enough; the page does not say it where it is `None`.
+        verdict: Option<&'a Verdict>,
     },
     /// Residuals of several models on one recording.
     Models {
@@ -187,8 +189,9 @@ impl Report<'_> {
                 model,
                 recordings,
                 evaluation,
+                verdict,
             } => Layout::new(
-                &evaluation::View::new(model, recordings, evaluation)?,
+                &evaluation::View::new(model, recordings, (evaluation, verdict))?,
                 is_wanted,
             ),
             Shown::Models { recording, models } => {

@@ -15,7 +15,7 @@ pub(crate) struct Adapt {
     #[command(flatten)]
     pub(crate) columns: Columns,
     /// State of the operators before the first sample
-    #[arg(long, value_enum, default_value = "fitted")]
+    #[arg(long, value_enum, default_value = "unknown")]
     pub(crate) start: AdaptStart,
     /// What learns, and how
     #[arg(long, default_value = "auto", value_parser = learners())]

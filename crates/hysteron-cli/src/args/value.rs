@@ -75,7 +75,9 @@ pub(crate) enum AdaptStart {
     Off,
     /// All on, as after the highest input
     On,
-    /// Not known: whichever of these gives the model as it is the smallest error
+    /// Found: all off, then at rest at one input or two, before the first sample
+    Rest,
+    /// The fitted one, unless another of these gives the model as it is a clearly smaller error
     Unknown,
 }
 
@@ -232,6 +234,7 @@ impl From<AdaptStart> for hysteron::Start {
             AdaptStart::Fitted => Self::Fitted,
             AdaptStart::Off => Self::Off,
             AdaptStart::On => Self::On,
+            AdaptStart::Rest => Self::Rest,
             AdaptStart::Unknown => Self::Unknown,
         }
     }

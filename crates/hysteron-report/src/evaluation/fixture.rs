@@ -4,7 +4,7 @@
 
 use hysteron::{
     Candidates, Evaluation, Fit, FitOptions, Model, Operator, Plane, Progress, Quantity, Recording,
-    Sign, cross_validate, evaluate, operators,
+    Sign, Verdict, cross_validate, evaluate, operators,
 };
 
 /// The parts of a report.
@@ -12,6 +12,7 @@ pub(crate) struct Fixture {
     pub(crate) model: Model,
     pub(crate) recording: Recording,
     pub(crate) evaluation: Evaluation,
+    pub(crate) verdict: Verdict,
 }
 
 /// A recording of `samples` samples, and a model that is slightly wrong about it.
@@ -35,8 +36,10 @@ pub(crate) fn sma(samples: usize) -> Fixture {
     recording.time = Some(time);
     recording.input_quantity = model.input.clone();
     recording.output_quantity = model.output.clone();
+    let evaluation = evaluate(&model, &recording).unwrap();
     Fixture {
-        evaluation: evaluate(&model, &recording).unwrap(),
+        verdict: Verdict::of_evaluation(&model, &recording, &evaluation).unwrap(),
+        evaluation,
         model,
         recording,
     }
@@ -67,6 +70,8 @@ impl Fixture {
     /// Evaluates again, after a change.
     pub(crate) fn evaluate(&mut self) {
         self.evaluation = evaluate(&self.model, &self.recording).unwrap();
+        self.verdict =
+            Verdict::of_evaluation(&self.model, &self.recording, &self.evaluation).unwrap();
     }
 }
 

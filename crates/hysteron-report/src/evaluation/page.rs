@@ -71,7 +71,7 @@ impl Subject for View<'_> {
     }
 
     fn above(&self) -> Markup {
-        verdict(self.verdict.as_ref())
+        verdict(self.verdict)
     }
 
     fn below(&self) -> Markup {

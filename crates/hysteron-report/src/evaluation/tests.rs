@@ -5,7 +5,7 @@ use crate::draw::style::{MEASURED, POINTED};
 use crate::evaluation::fixture::{Fixture, sma};
 use crate::made::Made;
 use crate::report::{Report, Shown};
-use hysteron::{Origin, Quantity, Recording, evaluate};
+use hysteron::{Origin, Quantity, Recording, Verdict, evaluate};
 
 fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
     Report {
@@ -14,6 +14,7 @@ fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
             model: &fixture.model,
             recordings: fixture.recording.as_ref(),
             evaluation: &fixture.evaluation,
+            verdict: Some(&fixture.verdict),
         },
         made: Made::default(),
     }
@@ -329,12 +330,14 @@ fn the_worst_sample_has_a_ring() {
     second.output[123] += 3.0;
     let recordings = [fixture.recording.clone(), second];
     let evaluation = evaluate(&fixture.model, &recordings).unwrap();
+    let verdict = Verdict::of_evaluation(&fixture.model, &recordings, &evaluation).unwrap();
     let report = Report {
         title: "",
         shown: Shown::Evaluation {
             model: &fixture.model,
             recordings: &recordings,
             evaluation: &evaluation,
+            verdict: Some(&verdict),
         },
         made: Made::default(),
     };
@@ -367,6 +370,7 @@ fn a_line_breaks_where_a_recording_begins() {
                 model: &fixture.model,
                 recordings,
                 evaluation: &evaluate(&fixture.model, recordings).unwrap(),
+                verdict: None,
             },
             made: Made::default(),
         };

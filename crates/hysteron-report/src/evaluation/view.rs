@@ -44,8 +44,7 @@ pub(crate) struct View<'a> {
     /// The first samples of all recordings but the first one.
     pub(crate) begins: Vec<usize>,
     pub(crate) evaluation: &'a Evaluation,
-    /// `None` for a recording that no error can be told of.
-    pub(crate) verdict: Option<Verdict>,
+    pub(crate) verdict: Option<&'a Verdict>,
     pub(crate) source: Source<'a>,
     pub(crate) input: Labelled,
     pub(crate) output: Labelled,
@@ -59,7 +58,7 @@ impl<'a> View<'a> {
     pub(crate) fn new(
         model: &'a Model,
         recordings: &'a [Recording],
-        evaluation: &'a Evaluation,
+        (evaluation, verdict): (&'a Evaluation, Option<&'a Verdict>),
     ) -> Result<Self, ReportError> {
         let recording = behind_body(model, recordings)?;
         let ends = recordings.iter().scan(0, |end, recording| {
@@ -91,7 +90,6 @@ impl<'a> View<'a> {
                 found,
             });
         }
-        let verdict = Verdict::of_evaluation(model, recordings, evaluation).ok();
         let source = Source::new(model);
         let input = Labelled::first([&recording.input_quantity, source.input()], "input");
         let (time, time_label) = clock(&recording);
@@ -111,7 +109,7 @@ impl<'a> View<'a> {
 
     /// The sample at which the model errs most, as the verdict tells it, and how a legend says it.
     pub(crate) fn worst(&self) -> Option<(usize, String)> {
-        let worst = self.verdict.as_ref()?.worst.as_ref()?;
+        let worst = self.verdict?.worst.as_ref()?;
         let first = match worst.recording.checked_sub(1) {
             None => 0,
             Some(n) => *self.begins.get(n)?,

@@ -1,7 +1,9 @@
 //! What is said of a fit: its errors, its verdict, and what there is to know.
 
 use super::fault::{Fault, spelt};
-use hysteron::{Advice, Errors, HeldOut, HoldOut, Model, Recording, Verdict, advice, doubts};
+use hysteron::{
+    Advice, Doubt, Errors, HeldOut, HoldOut, Model, Recording, Verdict, advice, doubts,
+};
 
 /// What is said of a fit.
 #[derive(Debug, Clone)]
@@ -23,11 +25,7 @@ impl Judged {
         what: Option<&HoldOut>,
         held_out: Option<HeldOut>,
     ) -> Result<Self, Fault> {
-        let doubts = recordings
-            .iter()
-            .map(doubts)
-            .collect::<Result<Vec<_>, _>>()?;
-        let doubts = doubts.concat();
+        let doubts = doubts_in(recordings)?;
         let verdict = Verdict::of_fit_holding_out(model, recordings, what)?;
         let verdict = verdict.doubting(doubts.len());
         let lines = verdict.lines(spelt).into_iter();
@@ -46,4 +44,10 @@ impl Judged {
             held_out,
         })
     }
+}
+
+/// The rows in doubt of all recordings.
+pub(super) fn doubts_in(recordings: &[Recording]) -> Result<Vec<Doubt>, Fault> {
+    let each = recordings.iter().map(doubts);
+    Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
 }

@@ -5,12 +5,13 @@ use super::c_archive;
 use super::commands;
 use super::fault::Fault;
 use super::id::Id;
+use super::judged::doubts_in;
 use super::state::Session;
 use super::thinned::rows;
 use super::view::View;
 use super::wish::Wish;
 use base64::Engine;
-use hysteron::{TableWriter, evaluate};
+use hysteron::{TableWriter, Verdict, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
 use hysteron_report::{Made, Report, Shown};
 use serde::{Deserialize, Serialize, Serializer};
@@ -226,6 +227,8 @@ impl Session {
         let opened = self.file(file)?;
         let recordings = opened.parts()?.all();
         let evaluation = evaluate(model, recordings)?;
+        let verdict = Verdict::of_evaluation(model, recordings, &evaluation)?;
+        let verdict = verdict.doubting(doubts_in(recordings)?.len());
         let title = format!("fit {fit} on {}", opened.name);
         let report = Report {
             title: &title,
@@ -233,6 +236,7 @@ impl Session {
                 model,
                 recordings,
                 evaluation: &evaluation,
+                verdict: Some(&verdict),
             },
             made: Made::default(),
         };

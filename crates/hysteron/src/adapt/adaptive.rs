@@ -6,7 +6,7 @@ use super::learns::Learns;
 use super::mixture::AutoOptions;
 use super::refit::{Core, Refit};
 use crate::error::{Error, Result};
-use crate::model::{Model, Operators, Sample, Sign, Start, State, Wanted};
+use crate::model::{Model, OperatorState, Operators, Sample, Sign, State, Wanted};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{Adaptation, Channel, Learning, Solution, StageState, Stages};
@@ -539,9 +539,9 @@ impl Adaptive {
         Ok(())
     }
 
-    /// Begins a recording. What was learned stays.
-    pub(super) fn start_from(&mut self, start: Start) -> Result<()> {
-        self.state.operators = self.offline.state_at(start).operators;
+    /// Begins a recording with the operators so. What was learned stays.
+    pub(super) fn start_from(&mut self, operators: OperatorState) -> Result<()> {
+        self.state.operators = operators;
         self.core.rebase(&mut self.state.operators)?;
         self.begin()
     }

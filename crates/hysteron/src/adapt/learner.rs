@@ -230,9 +230,10 @@ macro_rules! options {
             /// Which parameters are adapted, and by which method. Default `auto`.
             #[serde(rename = "method")]
             pub learner: Learner,
-            /// State of the operators before the first sample of a recording. Unknown: fitted, off
-            /// or on, whichever gives the unadapted model the smallest errors. Default `fitted`. A
-            /// loop begins with all operators off, unless they are told to be on.
+            /// State of the operators before the first sample of a recording. Default `unknown`: that
+            /// of the fit, unless off, on or the rest before the first recording leaves clearly
+            /// smaller errors of the unadapted model. What a start explains is not learned. A loop
+            /// begins with all operators off, unless they are told to be on.
             pub start: Start,
             $(
                 #[doc = concat!($purpose, ". ", $range, ". Default: ", $default, ".")]
@@ -244,7 +245,7 @@ macro_rules! options {
             fn default() -> Self {
                 Self {
                     learner: Learner::default(),
-                    start: Start::Fitted,
+                    start: Start::Unknown,
                     $($name: None,)*
                 }
             }

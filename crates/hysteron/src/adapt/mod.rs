@@ -46,11 +46,15 @@ pub use unknown_load::ShiftFound;
 pub use window::Window;
 
 use crate::error::{Error, Result};
+use crate::identify::find_rest;
 use crate::model::{Model, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
 use learned::Learned;
 use std::ops::Range;
+
+/// Another start is taken where it leaves less than this share of the squared error.
+const CLEARLY: f64 = 0.8;
 
 /// Runs an estimator over a recording. For each sample it returns the expected output before it
 /// learns from the measured one. Several recordings are parts of one experiment, such as the segments
@@ -123,7 +127,11 @@ fn learn(
     let learned_by = options.resolve(model, joined)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
-    let (start, fixed) = fixed(&offline, recordings, options.start)?;
+    let starts = match options.start {
+        Start::Unknown => vec![Start::Fitted, Start::Off, Start::On, Start::Rest],
+        start => vec![start],
+    };
+    let (offline, start, fixed) = fixed(&offline, recordings, starts)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
@@ -135,7 +143,7 @@ fn learn(
     let mut learned = Vec::with_capacity(count);
     let (mut last, mut all_held) = (None, Vec::new());
     for recording in recordings {
-        adaptive.start_from(start)?;
+        adaptive.start_from(offline.state_at(start).operators)?;
         // Those up to the last samples, and these.
         let sure = (count - unsure).saturating_sub(learned.len());
         let sure = sure.min(recording.len());
@@ -233,34 +241,35 @@ fn no_samples() -> Error {
     Error::Fit("no samples".into())
 }
 
-/// Where the operators start in each recording, and the outputs of the fixed model from there.
-fn fixed(model: &Model, recordings: &[Recording], start: Start) -> Result<(Start, Vec<f64>)> {
-    let error = |output: &[f64]| {
-        let pairs = recordings.iter().flat_map(|r| &r.output).zip(output);
-        pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>()
-    };
-    let asked = match start {
-        Start::Off | Start::On | Start::Fitted => vec![start],
-        Start::Rest => {
-            let what = "no rest is found for a model that adapts: take the start fitted, off, on \
-                        or unknown";
-            return Err(Error::Fit(what.into()));
-        }
-        Start::Unknown => vec![Start::Fitted, Start::Off, Start::On],
-    };
-    let mut least: Option<(f64, Start, Vec<f64>)> = None;
-    for start in asked {
-        let output = run_from(model, start, recordings)?;
-        let error = error(&output);
-        if least.as_ref().is_none_or(|(best, ..)| error < *best) {
-            least = Some((error, start, output));
+/// Which of `starts` leaves the fixed model the least errors, a model that knows that start, and its
+/// outputs from there. An earlier one gives way only to one that is clearly better.
+fn fixed(
+    model: &Model,
+    recordings: &[Recording],
+    starts: Vec<Start>,
+) -> Result<(Model, Start, Vec<f64>)> {
+    let mut least: Option<(f64, (Model, Start, Vec<f64>))> = None;
+    for start in starts {
+        let (model, start) = match start {
+            // One rest stands for all recordings, as one start does in a model.
+            Start::Rest => {
+                let (rested, _) = find_rest(model, &recordings[0])?;
+                (model.clone().starting_from(&rested)?, Start::Fitted)
+            }
+            Start::Fitted if model.fitted().is_none() => (model.clone(), Start::Off),
+            start => (model.clone(), start),
+        };
+        let output = run_from(&model, start, recordings)?;
+        let measured = recordings.iter().flat_map(|r| &r.output);
+        let error: f64 = measured.zip(&output).map(|(y, h)| (y - h).powi(2)).sum();
+        if least
+            .as_ref()
+            .is_none_or(|(best, _)| error < CLEARLY * best)
+        {
+            least = Some((error, (model, start, output)));
         }
     }
-    let (_, start, output) = least.ok_or_else(no_samples)?;
-    Ok(match start {
-        Start::Fitted if model.fitted().is_none() => (Start::Off, output),
-        _ => (start, output),
-    })
+    least.map(|(_, found)| found).ok_or_else(no_samples)
 }
 
 /// The outputs of a model that starts so in each recording.

@@ -38,7 +38,12 @@ pub(super) fn adapt(
         Some(load) => model.at_load(load)?,
         None => model.clone(),
     };
-    let (start, fixed) = fixed(&offline, recordings, options.start)?;
+    // A rest would be found on an axis that has not moved yet.
+    let starts = match options.start {
+        Start::Unknown => vec![Start::Fitted, Start::Off, Start::On],
+        start => vec![start],
+    };
+    let (offline, start, fixed) = fixed(&offline, recordings, starts)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {

@@ -114,6 +114,9 @@ pub(crate) fn find_rest(model: &Model, recording: &Recording) -> Result<(State, 
     let samples = beginning(&seen);
     let head = recording.part(0..samples);
     let error = |rest| squares(model, after(model, rest)?, &head);
-    let (rest, _) = search(range(&seen), error)?;
+    // Before a small loop it may have been anywhere.
+    let (low, high) = range(&seen);
+    let plane = model.plane();
+    let (rest, _) = search((low.min(plane.min()), high.max(plane.max())), error)?;
     Ok((after(model, rest)?, samples))
 }

@@ -3,15 +3,16 @@
 use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind, parts_after};
 use super::tested::BEYOND;
+use crate::error::Result;
 use crate::evaluate::Evaluation;
+use crate::forward::forward;
 use crate::hold_out::HeldOut;
 use crate::identify::kept::{DIFFERENT, UNDONE_LAG, speed_fitted};
-use crate::model::{FitSummary, Model};
+use crate::model::{FitSummary, Model, Start};
 use crate::recording::{ONE, Recording, one_speed};
 use crate::series::clipped::clipped;
 use crate::series::lost::held_between_readings;
-use crate::series::mean_and_deviation;
-use crate::series::{different_branches, usual_tolerance};
+use crate::series::{Errors, different_branches, mean_and_deviation, usual_tolerance};
 
 /// Why a model is not better.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +106,15 @@ pub enum Cause {
         /// a gain or a shift.
         late: bool,
     },
+    /// The actuator was not where the model begins: from another start it errs much less.
+    OtherStart {
+        /// That start.
+        start: Start,
+        /// The error from there, in percent.
+        percent: f64,
+        /// The share of the squared error that it explains, from 0 to 1.
+        share: f64,
+    },
     /// The model was fitted to inputs in which the lag of the sensor was undone, and here it is
     /// not.
     LagLeft {
@@ -137,6 +147,8 @@ pub(super) const OUTSIDE: f64 = 0.2;
 const BELONGS: f64 = 80.0;
 /// A model that explains less than this of the squared deviations is of something else.
 const FOLLOWED: f64 = 0.2;
+/// A start is worth a sentence if the model errs so many times less from there.
+const OTHER: f64 = 1.5;
 /// A part of this share is worth a sentence.
 pub(super) const WORTH: f64 = 0.25;
 /// A delay of fewer samples is none.
@@ -191,6 +203,7 @@ impl Cause {
             Self::FewPoints { .. } => "few_points",
             Self::OneSpeed { .. } => "one_speed",
             Self::OtherSpeed { .. } => "other_speed",
+            Self::OtherStart { .. } => "other_start",
             Self::LagLeft { .. } => "lag_left",
             Self::Easier { .. } => "easier",
             Self::LoadsLeftOut { .. } => "loads_left_out",
@@ -211,6 +224,7 @@ impl Cause {
             Self::OtherSpeed { late: false, .. } => 1.95,
             Self::Readings { share, .. } => 1.0 + share,
             Self::Part(part) => 1.0 + part.share,
+            Self::OtherStart { share, .. } => 1.0 + share,
             Self::Rival { .. } => 0.9,
             Self::Clipped { .. } | Self::HeldInput { .. } => 0.86,
             Self::Elsewhere { .. } => 0.85,
@@ -372,6 +386,29 @@ pub(super) fn other_circumstances(model: &Model, recordings: &[Recording]) -> Ve
     let speed = speed_fitted(fit).filter(is_other).filter(|_| timed);
     let speed = speed.map(|speed| Cause::OtherSpeed { speed, late });
     left.into_iter().chain(speed).collect()
+}
+
+/// The start from which a model errs least on recordings, if that is much less than it erred.
+///
+/// # Errors
+/// As [`forward`].
+pub(super) fn other_start(
+    model: &Model,
+    recordings: &[Recording],
+    errors: &Errors,
+) -> Result<Option<Cause>> {
+    let mut least = (errors.rmse / OTHER, None);
+    for start in [Start::Off, Start::On, Start::Rest] {
+        let found = forward(model, recordings, start)?.errors;
+        if found.rmse < least.0 {
+            least = (found.rmse, Some((start, found)));
+        }
+    }
+    Ok(least.1.map(|(start, found)| Cause::OtherStart {
+        start,
+        percent: found.nrmse_percent.unwrap_or_default(),
+        share: 1.0 - (found.rmse / errors.rmse).powi(2),
+    }))
 }
 
 /// Whether a model has what at one speed is not told from a wider loop.

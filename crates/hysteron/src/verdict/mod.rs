@@ -296,6 +296,11 @@ impl Verdict {
             let parts = cause::of_parts(recordings, output, was_fitted);
             verdict.causes.extend(parts);
         }
+        if percent > GOOD && !was_fitted {
+            verdict
+                .causes
+                .extend(cause::other_start(model, recordings, &errors)?);
+        }
         let at_one = verdict.one_speed.filter(|_| cause::comes_late(model));
         verdict.causes.extend(match was_fitted {
             true => at_one

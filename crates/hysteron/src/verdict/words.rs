@@ -4,7 +4,7 @@ use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
 use crate::advice::remedy_of_readings;
-use crate::model::band_name;
+use crate::model::{Start, band_name};
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting, counted};
 use std::fmt;
@@ -150,6 +150,14 @@ impl Verdict {
                 "the model was fitted at one speed ({} per second), and this one has others: what \
                  comes late is not in the model",
                 self.input.text(*speed)
+            ),
+            Cause::OtherStart { start, percent, .. } => format!(
+                "the model begins elsewhere than the actuator did: {}, it errs {percent:.2} %",
+                match start {
+                    Start::Off => "with all operators off",
+                    Start::On => "with all operators on",
+                    _ => "from a rest before the first sample",
+                }
             ),
             Cause::LagLeft { tau } => format!(
                 "the model was fitted with a lag of {} s of the input's sensor undone, and here it \
@@ -389,6 +397,18 @@ impl Verdict {
             Some(Cause::Readings {
                 samples, replaced, ..
             }) => remedy_of_readings(*samples, *replaced),
+            Some(Cause::OtherStart { start, .. }) => {
+                let start = match start {
+                    Start::Off => "off",
+                    Start::On => "on",
+                    _ => "rest",
+                };
+                Remedy::new(
+                    "evaluate it with {}; a stroke over the whole range, there and back, brings \
+                     actuator and model together",
+                    [Setting::word("start", start)],
+                )
+            }
             Some(Cause::LagLeft { .. }) => Remedy::new(
                 "undo it here too, with {} and that time constant",
                 [Setting::any("sensor-lag")],

@@ -2,8 +2,9 @@
 
 use crate::common::shared;
 use hysteron::{
-    Auto, Columns, Fit, FitOptions, Model, Operator, Plane, Progress, Recording, Repair, Sign,
-    Spacing, Start, evaluate_errors, left_out, range,
+    AdaptOptions, Auto, Cause, Columns, Fit, FitOptions, Model, Operator, Plane, Progress,
+    Recording, Repair, Sign, Spacing, Start, Verdict, adapt, evaluate, evaluate_errors, left_out,
+    range,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -202,5 +203,44 @@ fn every_start_is_fitted_with_time_too() {
             let recordings = std::slice::from_ref(&recording);
             assert!(left_out(recordings, &options, None, Progress::NONE).is_ok());
         }
+    }
+}
+
+/// A small loop never shows where it began. The model that begins elsewhere errs by a constant and a
+/// few weights, which is what a learner would learn; and the whole range would pay for it.
+#[test]
+fn what_another_start_explains_is_told_and_not_learned() {
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let model = plant(&mut rng);
+        let from = rng.random_range(0.55..1.0);
+        let recording = recorded(&model, &[1.0, 1.0 - from, from], 0.5);
+        let evaluation = evaluate(&model, &recording).unwrap();
+        let alone = evaluation.forward;
+        let error = error(&model, &recording, Start::Rest);
+        let verdict = Verdict::of_evaluation(&model, &recording, &evaluation).unwrap();
+        let is_other = |cause: &Cause| matches!(cause, Cause::OtherStart { .. });
+        let told = verdict.causes.iter().any(is_other);
+        let percent = alone.nrmse_percent.unwrap();
+        // A good model is not asked why it is no better.
+        let has_to = percent > 2.0 && 100.0 * error < percent / 1.6;
+        assert!(told || !has_to, "seed {seed}: {verdict}");
+        let adapted = adapt(&model, &recording, &AdaptOptions::default(), Progress::NONE).unwrap();
+        assert!(
+            adapted.whole.fixed.rmse <= alone.rmse,
+            "seed {seed}: {:?}",
+            adapted.whole
+        );
+        // Over the whole plane it is the model that it was, as far as the rest explains it.
+        let stroke = |n: i32| 0.1 + 0.9 * f64::from(20 - (n - 20).abs()) / 20.0;
+        let whole: Vec<f64> = (0..=40).map(stroke).collect();
+        let adapted = adapted.model.with_start(None).unwrap();
+        let (before, after) = (model.simulate(&whole), adapted.simulate(&whole));
+        let (before, after) = (before.unwrap(), after.unwrap());
+        let moved = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+        let (low, high) = range(&before);
+        let moved = 100.0 * moved.fold(0.0, f64::max) / (high - low);
+        // The small loop is a part of the range, so learned errors would be the larger share.
+        assert!(moved < 0.2 * percent, "seed {seed}: {moved} of {percent}");
     }
 }
