@@ -1475,6 +1475,8 @@ class AdaptedComparison(_Result):
         Where a channel stood still; what was learned from there is undone.
     cut_off : CutOff or None
         Where the output is cut off though the model goes on: a sensor at its end.
+    covered : float
+        The share of the plane that the inputs covered, from 0 to 1.
     """
 
     whole: Compared
@@ -1490,6 +1492,7 @@ class AdaptedComparison(_Result):
     drift: Drift
     stuck: tuple[Stuck, ...]
     cut_off: CutOff | None
+    covered: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,6 +10,9 @@ use hysteron::{
 use serde_json::{Value, json};
 use std::ops::Range;
 
+/// A recording that covers less of the plane is said to.
+const HALF: f64 = 0.5;
+
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     if let Some(table) = &args.table {
         hysteron_files::refuse_one_file(&args.out, table)?;
@@ -163,6 +166,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "worse": adapted.worse,
         "stuck": adapted.stuck,
         "cut_off": adapted.cut_off,
+        "covered": adapted.covered,
         "probation": adapted.probation,
         "again": adapted.again,
         "again_late": adapted.again_late,
@@ -280,6 +284,13 @@ fn to_text(
     lines.push(format!("the model moved: {}", drift(adapted)));
     // Where they do not refuse the model, they are told all the same.
     lines.extend(faults.iter().filter(|_| !refused).cloned());
+    if adapted.covered < HALF {
+        lines.push(format!(
+            "the input covered {:.0} % of the plane: what the model does beyond is a guess, and a \
+             stroke over the whole range would tell",
+            100.0 * adapted.covered
+        ));
+    }
     if adapted.probation > 0 {
         lines.push(format!(
             "the last {} samples are not in the model: no later samples confirm them",

@@ -390,3 +390,23 @@ fn the_end_of_a_sensor_is_not_learned_unasked() {
     let said = json(folder.path(), &format!("{ADAPT} --force"));
     assert!(said["cut_off"].is_null());
 }
+
+/// What a small part of the plane teaches is a guess elsewhere, and the command says so.
+#[test]
+fn how_much_of_the_plane_was_covered_is_told() {
+    let folder = wires();
+    let mut play = 20.0_f64;
+    let mut table = String::from("t,x,y\n");
+    for n in 0..900 {
+        let x = 50.0 + 6.0 * (f64::from(n) * 0.05).sin();
+        play = play.clamp(x - 5.0, x + 5.0);
+        table += &format!("{n},{x},{}\n", play * 0.3 + 1.0);
+    }
+    fs::write(folder.path().join("after.csv"), table).unwrap();
+    let done = run(folder.path(), &format!("{ADAPT} --force"));
+    assert!(
+        text(&done.stdout).contains("the input covered 20 % of the plane"),
+        "{}",
+        text(&done.stdout)
+    );
+}

@@ -42,8 +42,8 @@ pub struct Adapted {
     pub late: Option<Compared>,
     /// Whether the model that learned is no better than the model left alone: on the last third its
     /// errors, taken before it learned from each sample, are larger than those of the fixed model,
-    /// or as large although it changed. Differences of the size of rounding do not count. Or the
-    /// final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err
+    /// or less than 1 % smaller although it changed. Differences of the size of rounding do not
+    /// count. Or the final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err
     /// more on the first third, by 1 % of the range ([`Adapted::again_first`]), and either learning or
     /// they gained less than a tenth on the last.
     pub worse: bool,
@@ -65,6 +65,9 @@ pub struct Adapted {
     /// Where the output is cut off, though the model goes on by more than 1 % of its range: a
     /// sensor at its end. The model has learned that end. `None` where it is not.
     pub cut_off: Option<CutOff>,
+    /// The share of the plane that the inputs covered, from 0 to 1. What the model does beyond, no
+    /// reading says.
+    pub covered: f64,
     /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty
     /// for the other learners. *trend* is the refit, and half as far beyond it as it moved in a
     /// cycle.

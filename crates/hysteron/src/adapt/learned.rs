@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::model::{FitSummary, Model, Start};
 use crate::recording::{Origin, Recording};
 use crate::series::clipped::clipped;
-use crate::series::{CutOff, Errors, mean_and_deviation};
+use crate::series::{CutOff, Errors, mean_and_deviation, range};
 use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde_json::json;
 use std::ops::Range;
@@ -20,6 +20,9 @@ pub(super) const ROUNDING: f64 = 1e-9;
 /// that is all that it learned.
 const SPOILT: f64 = 0.01;
 
+/// A model that gains less than this share of the error is not worth a change.
+const WORTH: f64 = 0.01;
+
 /// One rejected reading in so many is a spike.
 const SELDOM: usize = 20;
 
@@ -28,8 +31,12 @@ const GAINS: f64 = 0.9;
 
 /// [`Adapted::worse`].
 fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
-    match late.map(|late| late.loss(range)) {
-        Some(loss) => loss > ROUNDING || changed && loss >= -ROUNDING,
+    match late {
+        Some(late) => {
+            let (loss, (off, on)) = (late.loss(range), range);
+            let least = WORTH * late.fixed.rmse / (on - off).abs();
+            loss > ROUNDING || changed && loss >= -least.max(ROUNDING)
+        }
         // Nothing says that it is better.
         None => changed,
     }
@@ -66,6 +73,8 @@ pub(super) struct Learned {
     pub(super) still: usize,
     /// The samples over which the output was held.
     pub(super) held: Vec<Range<usize>>,
+    /// The share of the plane that the inputs covered.
+    pub(super) covered: f64,
     pub(super) shares: Vec<(&'static str, f64)>,
     pub(super) shift: Option<ShiftFound>,
     pub(super) options: EstimatorOptions,
@@ -175,6 +184,7 @@ impl Learned {
             again_late,
             again_first,
             late_spread,
+            covered: self.covered,
             shares: self.shares,
             shift: self.shift,
             options: self.options,
@@ -254,6 +264,13 @@ impl EstimatorOptions {
             }),
         }
     }
+}
+
+/// [`Adapted::covered`], by inputs as the operators see them.
+pub(super) fn covered(model: &Model, inputs: &[f64]) -> f64 {
+    let (plane, (low, high)) = (model.plane(), range(inputs));
+    let seen = high.min(plane.max()) - low.max(plane.min());
+    (seen / (plane.max() - plane.min())).max(0.0)
 }
 
 /// The end of a sensor that the model goes beyond. Where the model ends as well, it may be a stop,

@@ -50,7 +50,7 @@ use crate::identify::find_rest;
 use crate::model::{Model, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
-use learned::Learned;
+use learned::{Learned, covered};
 use std::ops::Range;
 
 /// Another start is taken where it leaves less than this share of the squared error.
@@ -186,6 +186,7 @@ fn learn(
     Ok(Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
         start,
+        covered: covered(&offline, &joined.input),
         offline,
         last,
         learned,

@@ -1,7 +1,7 @@
 //! The method `load` over a recording: an estimate of the shift, sample by sample.
 
 use super::stuck::at_the_end;
-use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation, run_from};
+use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, covered, fixed, on_probation, run_from};
 use crate::error::Result;
 use crate::model::{Model, Start, Surroundings};
 use crate::progress::{Progress, SAMPLES_BETWEEN};
@@ -93,6 +93,7 @@ pub(super) fn adapt(
     Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
         start,
+        covered: covered(&offline, &joined.input),
         offline,
         last,
         learned,
