@@ -249,7 +249,8 @@ fn fixed(
     recordings: &[Recording],
     starts: Vec<Start>,
 ) -> Result<(Model, Start, Vec<f64>)> {
-    let mut least: Option<(f64, (Model, Start, Vec<f64>))> = None;
+    let mut least = None;
+    let mut bound = f64::INFINITY;
     for start in starts {
         let (model, start) = match start {
             // One rest stands for all recordings, as one start does in a model.
@@ -263,14 +264,11 @@ fn fixed(
         let output = run_from(&model, start, recordings)?;
         let measured = recordings.iter().flat_map(|r| &r.output);
         let error: f64 = measured.zip(&output).map(|(y, h)| (y - h).powi(2)).sum();
-        if least
-            .as_ref()
-            .is_none_or(|(best, _)| error < CLEARLY * best)
-        {
-            least = Some((error, (model, start, output)));
+        if least.is_none() || error < bound {
+            (least, bound) = (Some((model, start, output)), CLEARLY * error);
         }
     }
-    least.map(|(_, found)| found).ok_or_else(no_samples)
+    least.ok_or_else(no_samples)
 }
 
 /// The outputs of a model that starts so in each recording.

@@ -7,8 +7,9 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
+use crate::identify::stages::blocks::{BLOCKS, SMOOTH, WORTH, blocks};
 use crate::identify::weights::problem::Problem;
-use crate::model::{Delay, Sign, Smooth};
+use crate::model::{Delay, Sign};
 use crate::progress::Progress;
 use crate::recording::{Recording, gaps};
 use crate::series::{Turning, mean_and_deviation, usual_tolerance};
@@ -19,20 +20,9 @@ const LONGEST: usize = 8;
 /// Where the longest is the best, these are tried until they are worse, and then those between.
 const FURTHER: [usize; 6] = [12, 16, 24, 32, 48, 64];
 
-/// A shift has to reduce the error on blocks left out by this share, as a ring and creep have to.
-const WORTH: f64 = 0.1;
-
-/// Each recording is divided into so many blocks; those with an odd number are left out first, then
-/// the others. As for a ring.
-const BLOCKS: usize = 6;
-
-/// Levels and smoothness of the models that compare shifts: enough to resolve a loop, and few
-/// enough to fit eighteen models.
+/// Levels of the models that compare shifts: enough to resolve a loop, and few enough to fit
+/// eighteen models.
 const LEVELS: usize = 12;
-const SMOOTH: Smooth = Smooth {
-    along: 0.0,
-    across: 1e-6,
-};
 
 /// So many reversals at least tell whether the output goes on after them, and so many standard
 /// errors are no chance.
@@ -191,7 +181,7 @@ fn squares_left_out(
     let mut problem = Problem::new(recordings, options)?;
     let places: Vec<(usize, usize)> = recordings
         .iter()
-        .flat_map(|r| (0..r.len()).map(|n| (n, n * BLOCKS / r.len())))
+        .flat_map(|one| blocks(one, BLOCKS).enumerate())
         .collect();
     let (mut squares, mut sign) = (0.0, Sign::Positive);
     for parity in 0..2 {

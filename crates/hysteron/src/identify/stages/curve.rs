@@ -7,19 +7,13 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::{Choice, FitOptions};
+use crate::identify::stages::blocks::{BLOCKS, WORTH, blocks};
 use crate::identify::weights::problem::Problem;
 use crate::model::{Bend, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::{fair_range, range};
 use serde::Serialize;
-
-/// Each recording is divided into this many blocks; those with an odd number are left out first,
-/// then the others. As for creep.
-const BLOCKS: usize = 6;
-
-/// A curve has to reduce the error on blocks left out by this share. As for creep.
-const WORTH: f64 = 0.1;
 
 /// The largest number of pieces.
 const MOST: usize = 100;
@@ -114,16 +108,12 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(recordings: &'a [Recording], options: &'a FitOptions, progress: Progress<'a>) -> Self {
         let each = recordings.iter();
-        let block = |recording: &Recording| {
-            let count = recording.len();
-            (0..count).map(move |n| n * BLOCKS / count)
-        };
         Self {
             recordings,
             options,
             progress,
             measured: each.clone().flat_map(|r| r.output.clone()).collect(),
-            blocks: each.flat_map(block).collect(),
+            blocks: each.flat_map(|one| blocks(one, BLOCKS)).collect(),
         }
     }
 

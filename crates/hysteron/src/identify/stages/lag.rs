@@ -1,7 +1,8 @@
 //! Looks for a lag that nobody asked for.
 
 use super::after::Report;
-use super::search::{Search, WORTH, step_of, time_passes};
+use super::blocks::WORTH;
+use super::search::{Search, step_of, time_passes};
 use super::undone::After;
 use crate::error::Result;
 use crate::identify::changed::few_in_time;

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::identify::fixed::described;
 use crate::identify::kept;
 use crate::identify::options::FitOptions;
+use crate::identify::stages::blocks::{BLOCKS, WORTH};
 use crate::identify::stages::body::Search;
 use crate::identify::stages::nelder_mead::minimise;
 use crate::identify::weights::problem::Problem;
@@ -18,12 +19,6 @@ use crate::recording::Recording;
 use crate::series::range;
 use hysteron_core::Operator;
 use serde::Serialize;
-
-/// A single recording is divided into this many blocks of time. As for creep.
-const BLOCKS: usize = 6;
-
-/// Heat that is bound has to reduce the error on what is left out by this share. As for creep.
-const WORTH: f64 = 0.1;
 
 /// The search begins with so much heat for the range of the output, as a share of the range of
 /// temperatures at rest. A wire of NiTi binds about as much as 60 to 100 K take.

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::identify::changed::few_in_time;
 use crate::identify::choose::Open;
 use crate::identify::options::{Dynamics, FitOptions};
+use crate::identify::stages::blocks::{BLOCKS, SMOOTH, WORTH, blocks};
 use crate::identify::stages::nelder_mead::minimise;
 use crate::identify::stages::resonator::{Clock, Resonator};
 use crate::identify::stages::search::{fine, is_better, noise_percent};
@@ -16,18 +17,10 @@ use crate::identify::stages::undone::with_outputs;
 use crate::identify::weights::again::Again;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::solve::STEPS;
-use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::fair_range;
 use serde::Serialize;
-
-/// Each recording is divided into this many blocks; those with an odd number are left out first,
-/// then the others. As for creep.
-const BLOCKS: usize = 6;
-
-/// A ring has to reduce the error on blocks left out by this share. As for creep.
-const WORTH: f64 = 0.1;
 
 /// A ring that takes less than this share off the squares that the operators leave is not searched
 /// for any further: the recording does not excite it.
@@ -64,13 +57,6 @@ const LOOKED_AT: usize = 50_000;
 
 /// Turns between weights and ring.
 const ROUNDS: usize = 5;
-
-/// Smoothness of the weights in the search, as for creep. Levels are those of the options, which
-/// need not be chosen yet.
-const SMOOTH: Smooth = Smooth {
-    along: 0.0,
-    across: 1e-6,
-};
 
 /// What was tried, for the model file.
 #[derive(Debug, Clone, Serialize)]
@@ -159,10 +145,8 @@ fn judged(
     let Some(first) = search.first(&still, asked)? else {
         return Ok(None);
     };
-    let blocks: Vec<usize> = recordings
-        .iter()
-        .flat_map(|recording| (0..recording.len()).map(|n| n * BLOCKS / recording.len()))
-        .collect();
+    let all = recordings.iter();
+    let blocks: Vec<usize> = all.flat_map(|one| blocks(one, BLOCKS)).collect();
     let mut squares = [0.0; 2];
     for parity in 0..2 {
         let kept: Vec<f64> = blocks.iter().map(|b| f64::from(b % 2 != parity)).collect();

@@ -1,6 +1,7 @@
 //! Searches constants of creep and lag: those with the least error on what is fitted, and their
 //! error on blocks of time that are left out.
 
+use super::blocks::{BLOCKS, SMOOTH, WORTH, blocks};
 use super::undone::{After, forward, no_time, undone_outputs};
 use crate::error::{Error, Result};
 use crate::identify::choose::Open;
@@ -13,15 +14,6 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::coarse::noise_behind;
 use crate::series::{fair_range, fair_range_of_all, range};
-
-/// Each recording is divided into this many blocks of time; those with an odd number are left out
-/// first, then the others.
-const BLOCKS: usize = 6;
-
-/// Creep and lag have to reduce the error on blocks left out by this share. Blocks of one recording
-/// are less different than recordings are: on a valve, creep that gained 7 % on blocks left out
-/// lost 13 % on a recording at another frequency.
-pub(super) const WORTH: f64 = 0.1;
 
 /// So much of the whole error has to go, whatever the noise is.
 const LEAST: f64 = 0.02;
@@ -52,13 +44,6 @@ const SEARCHED: usize = 1;
 
 /// Rounds in which coefficients and time constants are refined, each with a smaller step.
 const REFINED: i32 = 4;
-
-/// Smoothness of the weights in the search, so that operators that a block left out do not run
-/// away.
-const SMOOTH: Smooth = Smooth {
-    along: 0.0,
-    across: 1e-6,
-};
 
 /// Constants, and the errors with them. On a coarse plane a lag helps where there is none, so what
 /// is taken has to help on a fine one as well.
@@ -325,7 +310,7 @@ impl<'a> Search<'a> {
         let blocks: Vec<usize> = self
             .recordings
             .iter()
-            .flat_map(|r| (0..r.len()).map(|n| n * self.blocks / r.len() % 2))
+            .flat_map(|one| blocks(one, self.blocks).map(|block| block % 2))
             .collect();
         let mut squares = 0.0;
         for part in [0, 1] {
