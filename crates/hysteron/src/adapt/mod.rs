@@ -53,8 +53,9 @@ use crate::recording::{Recording, no_recordings, one_after_the_other};
 use learned::{Learned, covered};
 use std::ops::Range;
 
-/// Another start is taken where it leaves less than this share of the squared error.
-const CLEARLY: f64 = 0.8;
+/// Another start is taken where the model errs 1.5 times less from there, by this share of the squared
+/// error. Under another load a start explains a little that is none.
+const CLEARLY: f64 = 1.0 / (1.5 * 1.5);
 
 /// Runs an estimator over a recording. For each sample it returns the expected output before it
 /// learns from the measured one. Several recordings are parts of one experiment, such as the segments
