@@ -7,10 +7,6 @@ use crate::series::{CutOff, Errors};
 use hysteron_core::Outcome;
 use serde::Serialize;
 
-/// The model that learned goes on learning, so a little more than the error of the fixed one is no
-/// harm. A model that is written stays as it is.
-const HARM: f64 = 1.1;
-
 /// From this share of a constant's error on, a model says nothing of the output.
 const NOTHING: f64 = 0.9;
 
@@ -43,7 +39,7 @@ pub struct Adapted {
     /// Whether the model that learned is no better than the model left alone: on the last third its
     /// errors, taken before it learned from each sample, are larger than those of the fixed model,
     /// or less than 1 % smaller although it changed. Differences of the size of rounding do not
-    /// count. Or the final weights have clearly larger errors there ([`Adapted::again_late`]). Or they err
+    /// count. Or the final weights have larger errors there ([`Adapted::again_late`]). Or they err
     /// more on the first third, by 1 % of the range ([`Adapted::again_first`]), and either learning or
     /// they gained less than a tenth on the last.
     pub worse: bool,
@@ -94,9 +90,9 @@ impl Compared {
         (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
     }
 
-    /// Whether what learned is clearly the worse one.
+    /// Whether what learned is the worse one.
     pub(super) fn is_harm(&self) -> bool {
-        self.adapting.rmse > HARM * self.fixed.rmse
+        self.adapting.rmse > self.fixed.rmse
     }
 
     /// Whether what learned says nothing of outputs of that `spread`.
