@@ -13,6 +13,7 @@ mod fleet_prior;
 mod folder;
 mod genuine;
 mod instructions;
+mod jitter;
 mod judged;
 mod leaderboard;
 mod loads;
@@ -34,7 +35,7 @@ use std::process::ExitCode;
 /// A program: its name, what it prints, and what runs it with the words behind its name.
 type Program = (&'static str, &'static str, fn(&[String]) -> Result<()>);
 
-const PROGRAMS: [Program; 18] = [
+const PROGRAMS: [Program; 19] = [
     (
         "adaptation",
         "FOLDER: models adapted over recordings",
@@ -79,6 +80,11 @@ const PROGRAMS: [Program; 18] = [
         "instructions",
         "instructions a sample, by callgrind",
         instructions::run,
+    ),
+    (
+        "jitter",
+        "COMMAND SECONDS: how fast `hysteron run` answers",
+        jitter::run,
     ),
     (
         "leaderboard",
