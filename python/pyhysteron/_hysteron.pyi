@@ -64,6 +64,7 @@ __all__ = [
     "branches",
     "compare",
     "design",
+    "design_heated",
     "excitation",
     "fit",
     "fit_fleet",
@@ -927,6 +928,16 @@ def design(
     recorded: _Inputs | None = None,
     step: float | None = None,
     operator: _Operator = "mkp",
+) -> Design: ...
+def design_heated(
+    model: Model,
+    *,
+    range: _Range | None = None,
+    levels: int = 20,
+    heating_rate: float | None = None,
+    cooling_rate: float | None = None,
+    budget: float | None = None,
+    step: float | None = None,
 ) -> Design: ...
 def excitation(
     input: _Inputs,

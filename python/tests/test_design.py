@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 
@@ -53,3 +55,33 @@ def test_budget_recordings_step_and_operator():
 def test_bad_options_are_named(options, message):
     with pytest.raises(ValueError, match=message):
         pyhysteron.design(**{"range": (20, 80), "levels": 10, **RATES, **options})
+
+
+def heated():
+    plain = json.loads(pyhysteron.Model(np.full(55, 0.1), (20, 80)).to_json())
+    body = {"kind": "first-order", "ambient": 15.0, "gain": 1.0, "tau_heating": 4.0, "tau_cooling": 9.0}
+    model = plain | {"version": 2, "thermal": body, "drive": {"min": 0.0, "max": 80.0}}
+    return pyhysteron.Model.from_json(json.dumps(model))
+
+
+def test_the_body_of_a_model_is_led_within_the_drives():
+    profile = pyhysteron.design_heated(heated(), range=(0, 80), levels=10)
+    assert 0 <= profile.input.min() and profile.input.max() <= 80
+    assert np.nanmin(profile.excitation) == 3
+    slower = pyhysteron.design_heated(heated(), range=(0, 80), levels=10, heating_rate=0.1, cooling_rate=0.1)
+    assert slower.duration > profile.duration
+    assert pyhysteron.design_heated(heated(), range=(0, 80), budget=profile.duration / 2).duration <= profile.duration / 2
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"heating_rate": 0.1}, "both"),
+        ({"heating_rate": 1e3, "cooling_rate": 0.1}, "slower rates"),
+        ({"range": (0, 10)}, "no operator"),
+        ({"levels": 1}, "levels"),
+    ],
+)
+def test_what_a_body_cannot_follow_is_named(options, message):
+    with pytest.raises(ValueError, match=message):
+        pyhysteron.design_heated(heated(), **{"range": (0, 80), **options})

@@ -95,8 +95,8 @@ impl Config {
         let what = "a design is for the plane of a model: name its file";
         self.require(model, "profile.model", what)?;
         let fine = |(up, down): (f64, f64)| up > 0.0 && down > 0.0 && (up + down).is_finite();
-        let what = "a design needs how fast the drive rises and falls: two numbers above zero";
-        self.require(profile.rates.is_some_and(fine), "profile.rates", what)
+        let what = "how fast the drive rises and falls: two numbers above zero";
+        self.require(profile.rates.is_none_or(fine), "profile.rates", what)
     }
 
     fn check_control(&self) -> Result<()> {

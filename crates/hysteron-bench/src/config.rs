@@ -96,7 +96,8 @@ pub struct Profile {
     pub time: Option<String>,
     /// For `design`: the model whose plane the experiment is for.
     pub model: Option<PathBuf>,
-    /// For `design`: how fast the drive rises and falls, in its unit per second.
+    /// For `design`: how fast the drive rises and falls, in its unit per second. For a model with a
+    /// thermal body it is the temperature, and by default as fast as the limits of the drive allow.
     pub rates: Option<(f64, f64)>,
 }
 

@@ -4,7 +4,8 @@ use crate::config::{Config, Profile};
 use crate::error::Result;
 use hysteron::control::Reference;
 use hysteron::{
-    Columns, DesignOptions, Direction, Model, Rates, Recording, Repair, design, headings, range,
+    Columns, DesignOptions, Direction, Model, Rates, Recording, Repair, design, design_heated,
+    headings, range,
 };
 use hysteron_sim::track;
 use std::path::Path;
@@ -63,7 +64,8 @@ impl Course {
         Self::read(&config.at(&options.table), time, column).map(Some)
     }
 
-    /// The experiment that determines a model on the plane of another one.
+    /// The experiment that determines a model on the plane of another one. Where a body heats, it is
+    /// planned in temperatures, and no drive leaves the limits.
     fn designed(config: &Config, options: &Profile) -> Result<Self> {
         let missing = |field| config.refused(field, "a design needs it");
         let model = options
@@ -71,19 +73,20 @@ impl Course {
             .as_ref()
             .ok_or_else(|| missing("profile.model"))?;
         let model = Model::read(&config.at(model))?;
-        if model.thermal.is_some() {
-            let what = "the plane of this model is one of temperatures, which no drive has: \
-                        `hysteron design --model` makes a table of drives to play";
-            return Err(config.refused("profile.model", what));
-        }
-        let (heating, cooling) = options.rates.ok_or_else(|| missing("profile.rates"))?;
-        let found = design(
-            &DesignOptions {
-                budget_s: config.duration_s,
-                ..DesignOptions::new(*model.plane(), Rates { heating, cooling })
-            },
-            &[],
-        )?;
+        let rates = options.rates;
+        let rates = rates.map(|(heating, cooling)| Rates { heating, cooling });
+        let (plane, budget_s) = (*model.plane(), config.duration_s);
+        let found = match model.thermal {
+            Some(_) => {
+                let limits = (budget_s, None);
+                design_heated(&model, config.limits.drive, plane.levels(), rates, limits)?
+            }
+            None => {
+                let rates = rates.ok_or_else(|| missing("profile.rates"))?;
+                let plain = DesignOptions::new(plane, rates);
+                design(&DesignOptions { budget_s, ..plain }, &[])?
+            }
+        };
         Ok(Self::new(found.time.into_iter().zip(found.input).collect()))
     }
 

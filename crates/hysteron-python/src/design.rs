@@ -4,6 +4,7 @@ use crate::error::Raise;
 use crate::evaluate::classes;
 use crate::inputs::inputs_of;
 use crate::integer::Integer;
+use crate::model::Model;
 use crate::pool::detached;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
@@ -189,5 +190,86 @@ pub(crate) fn design(
     };
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
     let inner = detached(py, || hysteron::design(&options, &inputs)).raise()?;
+    Ok(Design { inner })
+}
+
+/// The profile of drives of which a model with a thermal body can be identified anew.
+///
+/// It is planned in temperatures, within the model's range and 5 % inside of what the drives can
+/// hold, and given as the drives that make the body follow it. The first drive holds the first
+/// temperature: begin at rest there. `Design.legs` are in temperatures.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     It has a thermal body.
+/// range : tuple of float, optional
+///     Lowest and highest drive; by default those of the recording that was fitted.
+/// levels : int
+/// heating_rate, cooling_rate : float, optional
+///     How fast the temperature rises and falls, in its unit per second; by default as fast as the
+///     drives can everywhere. Give both or none.
+/// budget : float, optional
+///     Longest duration, s. By default all that it takes.
+/// step : float, optional
+///     Longest time between samples, s; by default ten samples a level.
+///
+/// Returns
+/// -------
+/// Design
+///
+/// Raises
+/// ------
+/// DesignError
+///     For a model without a body, a range in which nothing moves, and rates that its drives cannot
+///     give; one rate alone, an invalid budget or step.
+///
+/// Examples
+/// --------
+/// >>> time = np.arange(3000) * 0.1
+/// >>> drive = 50 - 50 * np.cos(0.05 * time)
+/// >>> temperature = np.zeros(3000)
+/// >>> for n in range(1, 3000):
+/// ...     temperature[n] = temperature[n - 1] + 0.1 / 4 * (drive[n] - temperature[n - 1])
+/// >>> wire = pyhysteron.fit(drive, temperature, time=time, levels=5, thermal='first-order')
+/// >>> profile = pyhysteron.design_heated(wire, range=(0, 80), levels=10)
+/// >>> bool(profile.input.min() >= 0 and profile.input.max() <= 80)
+/// True
+#[pyfunction]
+#[pyo3(signature = (model, *, range=None, levels=None, heating_rate=None, cooling_rate=None, budget=None, step=None, **unknown),
+    text_signature = "(model, *, range=None, levels=20, heating_rate=None, cooling_rate=None, budget=None, step=None)")]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn design_heated(
+    py: Python<'_>,
+    model: &Model,
+    range: Option<(f64, f64)>,
+    levels: Option<Integer>,
+    heating_rate: Option<f64>,
+    cooling_rate: Option<f64>,
+    budget: Option<f64>,
+    step: Option<f64>,
+    unknown: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Design> {
+    let names = [
+        "range",
+        "levels",
+        "heating_rate",
+        "cooling_rate",
+        "budget",
+        "step",
+    ];
+    crate::choices::none_left("design_heated", unknown, &names)?;
+    let rates = match (heating_rate, cooling_rate) {
+        (None, None) => None,
+        (Some(heating), Some(cooling)) => Some(Rates { heating, cooling }),
+        _ => {
+            let what = "give both `heating_rate` and `cooling_rate`, or neither";
+            return Err(hysteron::Error::Design(what.into())).raise();
+        }
+    };
+    let levels = levels.map_or(Ok(20), |levels| levels.convert("levels"))?;
+    let model = &model.inner;
+    let find = || hysteron::design_heated(model, range, levels, rates, (budget, step));
+    let inner = detached(py, find).raise()?;
     Ok(Design { inner })
 }

@@ -68,7 +68,7 @@ mod _hysteron {
     #[pymodule_export]
     use crate::controller::Controller;
     #[pymodule_export]
-    use crate::design::{Design, design};
+    use crate::design::{Design, design, design_heated};
     #[pymodule_export]
     use crate::evaluate::excitation;
     #[pymodule_export]

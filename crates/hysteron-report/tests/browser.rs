@@ -45,6 +45,7 @@ fn open(browser: &mut Chromium, samples: usize, folder: &Path, width: u32) -> Ta
             model: &model,
             recordings: recording.as_ref(),
             evaluation: &evaluate(&model, &recording).unwrap(),
+            verdict: None,
         },
         made: Made::default(),
     };

@@ -2,7 +2,7 @@
 
 use super::bench::{PID, bench, column, config, folder, plain, rows};
 use super::device::{DT, Fault, SAFE, start};
-use hysteron::{Delay, Model, Operator, Plane, Sign};
+use hysteron::{Delay, FirstOrder, Model, Operator, Plane, Sign};
 use hysteron_bench::{Config, End, Error, Options, Summary, dry_run};
 
 const RECORD: &str = "mode = 'record'\nlog = 'run.csv'\nlimits = { drive = [0, 8] }\n\
@@ -392,4 +392,48 @@ fn a_delay_without_end_is_refused() {
     let said = plain(&config, &Options::default()).unwrap_err().to_string();
     assert!(said.contains("`delay` must be at most 1001"), "{said}");
     assert_eq!(served.join().unwrap().drive, SAFE);
+}
+
+/// The plane of a wire is one of temperatures. Its profile is one of drives, within the limits.
+#[test]
+fn a_design_for_a_body_is_a_profile_of_drives() {
+    let folder = folder();
+    let plane = Plane::new(20.0, 80.0, 6).unwrap();
+    let mut wire = Model::new(Operator::Mkp, plane, vec![0.1; 21], 0.0, Sign::Positive).unwrap();
+    wire.thermal = Some(FirstOrder {
+        ambient: 15.0,
+        gain: 1.0,
+        tau_heating: 0.4,
+        tau_cooling: 0.9,
+    });
+    std::fs::write(folder.path().join("wire.json"), wire.to_json()).unwrap();
+    let lines = |more: &str| {
+        let text = format!(
+            "mode = 'record'\nlog = 'run.csv'\nlimits = {{ drive = [0, 75] }}\n\
+             profile = {{ table = 'design', model = 'wire.json'{more} }}\n"
+        );
+        let config = config(&folder, &text, "simulated = 'wire'");
+        dry_run(&config, &Options::default())
+    };
+    let course = |lines: &[String]| -> Vec<f64> {
+        let line = lines
+            .iter()
+            .find(|line| line.starts_with("course"))
+            .unwrap();
+        let words = line.split([' ', ',']).filter_map(|word| word.parse().ok());
+        words.collect()
+    };
+    let [low, high, end] = course(&lines("").unwrap())[..] else {
+        panic!("a course has two ends and a duration")
+    };
+    assert!(0.0 <= low && low < high && high <= 75.0, "{low} to {high}");
+    let slower = course(&lines(", rates = [2, 2]").unwrap())[2];
+    assert!(slower > end, "{slower} s, and {end} s as fast as it can");
+    let refused = lines(", rates = [1e6, 2]").unwrap_err().to_string();
+    assert!(refused.contains("slower rates"), "{refused}");
+    // Without a body nobody knows how fast.
+    wire.thermal = None;
+    std::fs::write(folder.path().join("wire.json"), wire.to_json()).unwrap();
+    let refused = lines("").unwrap_err().to_string();
+    assert!(refused.contains("profile.rates"), "{refused}");
 }

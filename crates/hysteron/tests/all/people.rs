@@ -98,6 +98,7 @@ fn columns_without_names_go_by_number() {
     };
     for (text, note) in [
         ("0;20,5;1\n1;30,5;2\n", note(1)),
+        ("hot;20,5;1\ncold;30,5;2\n", note(1)),
         ("Run 7\nof March\n0\t20.5\t1\n1\t30.5\t2\n", note(3)),
     ] {
         let file = written(text);

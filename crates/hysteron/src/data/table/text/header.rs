@@ -71,7 +71,8 @@ pub(super) fn find(lines: &[Line]) -> (Header, usize) {
         let first = lines.iter().position(|line| body.has(line))?;
         let bare = lines[first].numbers.iter().all(|number| *number);
         let text_above = lines[..first].iter().all(|line| line.cells.len() == 1);
-        (bare && text_above && body.width > 1 || first == 0 && bare).then_some(first)
+        // A first line that is as most rows are is one of them, words in it or not.
+        (first == 0 || bare && text_above && body.width > 1).then_some(first)
     };
     let (index, named) = match found {
         Some(index) => (index, true),
