@@ -14,6 +14,7 @@ use super::learns::{Learns, writable};
 use super::refit::{Core, Refit};
 use super::shares::Shares;
 use super::strokes::{LEAST, Strokes};
+use super::unsure::Unsure;
 use crate::error::Result;
 use crate::model::{Model, OperatorState};
 use hysteron_core::{Adaptation, Channel, Learning, Outcome, Reading, Watch, Watched};
@@ -78,6 +79,10 @@ pub(super) struct Mixture {
     strokes: Strokes,
     /// A state for weights of the past.
     there: OperatorState,
+    /// Of a mixture that has just begun: nothing is learned of what the start explains.
+    unsure: Option<Unsure>,
+    /// Whether the caller froze it.
+    asked: bool,
     frozen: bool,
 }
 
@@ -108,8 +113,10 @@ impl Mixture {
             far: shares(),
         };
         let level = experts[0].learns.level();
-        let mixture = Self {
-            watch: Watch::new(high - low, model.plane().levels() as f64),
+        let levels = model.plane().levels();
+        let on = model.within().plain()?.saturated();
+        let mut mixture = Self {
+            watch: Watch::new(high - low, levels as f64),
             trusted: shares.clone(),
             pending: shares.clone(),
             good: Good {
@@ -121,11 +128,14 @@ impl Mixture {
             trend,
             weights: model.weights().to_vec(),
             offset: level,
-            strokes: Strokes::new(model.plane().levels()),
+            strokes: Strokes::new(levels),
             there: state,
+            unsure: Some(Unsure::new(on, levels)),
+            asked: false,
             frozen: false,
             experts,
         };
+        mixture.freeze(false);
         Ok((core, mixture))
     }
 
@@ -168,6 +178,11 @@ impl Mixture {
         let from = state.position();
         let step = core.step(state, input)?;
         let distance = (state.position() - from).abs();
+        if let Some(unsure) = &mut self.unsure
+            && !unsure.step(core, input, step.output)?
+        {
+            self.begin_to_learn();
+        }
         let part = if self.frozen {
             LEAST
         } else {
@@ -343,8 +358,9 @@ impl Mixture {
         Ok(())
     }
 
-    /// Others set the state.
+    /// Others set the state, and know it.
     pub(super) fn realign(&mut self, state: &OperatorState) -> Result<()> {
+        self.begin_to_learn();
         for expert in &mut self.experts {
             expert.move_to(state)?;
             expert.learns.realign(&expert.state)?;
@@ -360,12 +376,19 @@ impl Mixture {
         self.watch.restart();
     }
 
+    /// The start is known, or matters no more.
+    fn begin_to_learn(&mut self) {
+        self.unsure = None;
+        self.freeze(self.asked);
+    }
+
     pub(super) fn freeze(&mut self, frozen: bool) {
-        self.frozen = frozen;
+        self.asked = frozen;
+        self.frozen = frozen || self.unsure.is_some();
         self.watch.restart();
-        self.experts
-            .iter_mut()
-            .for_each(|expert| expert.learns.freeze(frozen));
+        for expert in &mut self.experts {
+            expert.learns.freeze(self.frozen);
+        }
     }
 
     pub(super) fn keep(&mut self) {

@@ -6,8 +6,8 @@
 //! these come to for a model. `adaptive` is the model that learns sample by sample: by an estimator
 //! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
 //! samples of a `window`, from their `sums`. `mixture` has several of these side by side, each an
-//! `expert` with one of the `shares`, and counts in `strokes` how far the input went; `learns` is
-//! the choice among all of these. `load` and `unknown_load` do the same for the shift of an unknown
+//! `expert` with one of the `shares`, counts in `strokes` how far the input went, and waits while it
+//! is `unsure` how the operators began; `learns` is the choice among all of these. `load` and `unknown_load` do the same for the shift of an unknown
 //! load. `counts` counts what was done with the samples, `stuck` finds where a channel stood still,
 //! and `drift` tells how far the model moved.
 
@@ -29,6 +29,7 @@ mod strokes;
 mod stuck;
 mod sums;
 mod unknown_load;
+mod unsure;
 mod window;
 
 pub use adapted::{Adapted, Compared};

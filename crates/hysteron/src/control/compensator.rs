@@ -8,7 +8,8 @@
 //!
 //! But weights that learn cause a problem: a turning point asked for with old weights stays in the
 //! memory of the inverse until it is wiped out. So with a learning model, the inverse restarts from
-//! the measured input wherever the target turns. There it has to cross the dead band anyway.
+//! the measured input where the target turns, if the model expects what is measured there. There it
+//! has to cross the dead band anyway.
 
 use super::trust::Trust;
 use crate::adapt::{Adaptive, AdaptiveLoad};
