@@ -41,6 +41,8 @@ pub struct Compensator {
     changed: bool,
     /// The output expected at the last input.
     prediction: f64,
+    /// By how much the last reading was missed.
+    missed: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -259,6 +261,7 @@ impl Compensator {
             resting: 0,
             changed: false,
             prediction: f64::NAN,
+            missed: 0.0,
         }
     }
 
@@ -276,6 +279,9 @@ impl Compensator {
     ) -> Result<(f64, Option<Outcome>)> {
         let followed = self.moved(input, dt, measured)?;
         self.prediction = followed.0;
+        if let Some(measured) = measured {
+            self.missed = (measured - followed.0).abs();
+        }
         Ok(followed)
     }
 
@@ -373,7 +379,10 @@ impl Compensator {
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
         let turns = branch.push(target).is_some();
         let branch = branch.branch();
-        if turns && !matches!(self.kind, Kind::Fixed { .. }) {
+        // Where the model expects something else than is measured, a feedback has made up for that.
+        // An inverse that sets out from the drive would make up for it once more.
+        let expects = self.missed <= tolerance;
+        if turns && expects && !matches!(self.kind, Kind::Fixed { .. }) {
             self.set_out_again();
         }
         let (state, sign) = self.kind.at();
