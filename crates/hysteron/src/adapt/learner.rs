@@ -233,7 +233,8 @@ macro_rules! options {
             /// State of the operators before the first sample of a recording. Default `unknown`: that
             /// of the fit, unless off, on or the rest before the first recording leaves clearly
             /// smaller errors of the unadapted model. What a start explains is not learned. A loop
-            /// begins with all operators off, unless they are told to be on.
+            /// begins with all operators off, unless they are told to be on, and [`Learner::Auto`]
+            /// waits there while another start would still make a difference.
             pub start: Start,
             $(
                 #[doc = concat!($purpose, ". ", $range, ". Default: ", $default, ".")]
