@@ -79,10 +79,9 @@ pub(super) struct Mixture {
     strokes: Strokes,
     /// A state for weights of the past.
     there: OperatorState,
-    /// Of a mixture that has just begun: nothing is learned of what the start explains.
+    /// Of a mixture that has just begun: the model stays as it is, and nobody is judged by what the
+    /// start explains.
     unsure: Option<Unsure>,
-    /// Whether the caller froze it.
-    asked: bool,
     frozen: bool,
 }
 
@@ -115,7 +114,7 @@ impl Mixture {
         let level = experts[0].learns.level();
         let levels = model.plane().levels();
         let on = model.within().plain()?.saturated();
-        let mut mixture = Self {
+        let mixture = Self {
             watch: Watch::new(high - low, levels as f64),
             trusted: shares.clone(),
             pending: shares.clone(),
@@ -131,11 +130,9 @@ impl Mixture {
             strokes: Strokes::new(levels),
             there: state,
             unsure: Some(Unsure::new(on, levels)),
-            asked: false,
             frozen: false,
             experts,
         };
-        mixture.freeze(false);
         Ok((core, mixture))
     }
 
@@ -181,7 +178,7 @@ impl Mixture {
         if let Some(unsure) = &mut self.unsure
             && !unsure.step(core, input, step.output)?
         {
-            self.begin_to_learn();
+            self.unsure = None;
         }
         let part = if self.frozen {
             LEAST
@@ -224,14 +221,15 @@ impl Mixture {
         }
         if fell_silent {
             self.undo()?;
-        } else if believed {
+        } else if believed && self.unsure.is_none() {
             self.judge(state, &outputs, measured, part)?;
         }
         let turned = !self.frozen && self.strokes.turned(state.position());
         if turned {
             self.turn()?;
         }
-        if turned || !matches!(outcome, Outcome::AtRest | Outcome::Frozen) {
+        let learns = turned || !matches!(outcome, Outcome::AtRest | Outcome::Frozen);
+        if learns && self.unsure.is_none() {
             // What was forgotten is gone at once.
             let whole = turned || fell_silent || outcomes.contains(&Outcome::RolledBack);
             self.mix(core, if whole { 1.0 } else { FOLLOWED });
@@ -360,7 +358,7 @@ impl Mixture {
 
     /// Others set the state, and know it.
     pub(super) fn realign(&mut self, state: &OperatorState) -> Result<()> {
-        self.begin_to_learn();
+        self.unsure = None;
         for expert in &mut self.experts {
             expert.move_to(state)?;
             expert.learns.realign(&expert.state)?;
@@ -376,19 +374,12 @@ impl Mixture {
         self.watch.restart();
     }
 
-    /// The start is known, or matters no more.
-    fn begin_to_learn(&mut self) {
-        self.unsure = None;
-        self.freeze(self.asked);
-    }
-
     pub(super) fn freeze(&mut self, frozen: bool) {
-        self.asked = frozen;
-        self.frozen = frozen || self.unsure.is_some();
+        self.frozen = frozen;
         self.watch.restart();
-        for expert in &mut self.experts {
-            expert.learns.freeze(self.frozen);
-        }
+        self.experts
+            .iter_mut()
+            .for_each(|expert| expert.learns.freeze(frozen));
     }
 
     pub(super) fn keep(&mut self) {
@@ -426,10 +417,11 @@ impl Mixture {
 
     pub(super) fn refit(&mut self, core: &mut Core) -> Result<bool> {
         self.refit_all()?;
-        if !self.frozen {
+        let mixes = !self.frozen && self.unsure.is_none();
+        if mixes {
             self.mix(core, 1.0);
         }
-        Ok(!self.frozen)
+        Ok(mixes)
     }
 }
 
