@@ -22,9 +22,6 @@ use hysteron_core::{Direction, Outcome, Solution, Target};
 /// the inverse crosses the dead band only if the difference exceeds this many tolerances.
 const NOT_TURNED: f64 = 8.0;
 
-/// A feedback that leads the operators less far from what was asked makes up for nothing, in levels.
-const LED: f64 = 0.5;
-
 /// Number of samples after a jump of the input during which the model does not learn.
 const JUMP: u32 = 10;
 
@@ -382,11 +379,13 @@ impl Compensator {
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
         let turns = branch.push(target).is_some();
         let branch = branch.branch();
-        let (state, sign) = self.kind.at();
-        let learns = !matches!(self.kind, Kind::Fixed { .. });
-        if turns && learns && !self.is_made_up_for(&state, tolerance) {
+        // Where the model expects something else than is measured, a feedback has made up for that.
+        // An inverse that sets out from the drive would make up for it once more.
+        let expects = self.missed <= tolerance;
+        if turns && expects && !matches!(self.kind, Kind::Fixed { .. }) {
             self.set_out_again();
         }
+        let (state, sign) = self.kind.at();
         let wanted = self.wanted.get_or_insert(state);
         let rises = wanted.is_rising() == (sign == Sign::Positive);
         let turned = match branch {
@@ -423,17 +422,6 @@ impl Compensator {
             ..target.into()
         };
         self.kind.solve_from(wanted, wanted_now, &after)
-    }
-
-    /// Whether a feedback makes up for what the model does not expect: it has led the operators
-    /// elsewhere than the inverse asked. One that set out from there would make up for it once more.
-    fn is_made_up_for(&self, state: &State, tolerance: f64) -> bool {
-        let asked = self
-            .wanted
-            .as_ref()
-            .map(|wanted| wanted.operators.position());
-        let led = asked.map_or(0.0, |asked| (asked - state.operators.position()).abs());
-        self.missed > tolerance && led > LED
     }
 
     /// Restarts the inverse from the last measured input. While the input is not measured, it may
