@@ -405,7 +405,7 @@ fn how_much_of_the_plane_was_covered_is_told() {
     fs::write(folder.path().join("after.csv"), table).unwrap();
     let done = run(folder.path(), &format!("{ADAPT} --force"));
     assert!(
-        text(&done.stdout).contains("the input covered 20 % of the plane"),
+        text(&done.stdout).contains("the input covered 22 % of the plane"),
         "{}",
         text(&done.stdout)
     );
