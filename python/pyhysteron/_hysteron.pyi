@@ -888,7 +888,7 @@ def adapt(
     *,
     time: _Times | None = None,
     method: Literal["auto", "fixed", "refit", "drift", "least-squares", "increments", "load"] = "auto",
-    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
+    start: Literal["fitted", "off", "on", "rest", "unknown"] = "unknown",
     window: str | None = None,
     every: int | None = None,
     ridge: float | None = None,

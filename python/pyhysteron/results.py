@@ -1455,8 +1455,8 @@ class AdaptedComparison(_Result):
     late : Compared or None
         Over the last third, without readings that were rejected.
     worse : bool
-        Whether the model that learned ended no better than the fixed one on the last third, or errs 1 %
-        of its range more on the first third without a gain of a tenth on the last.
+        Whether the model that learned ended no better than the fixed one on the last third (a gain
+        below 1 % counts as none), or errs 1 % of its range more on the first third without a gain of a tenth on the last.
     probation : int
         Samples at the end that the model did not take over, since no later samples confirm them.
     again : Errors
@@ -1475,8 +1475,10 @@ class AdaptedComparison(_Result):
         Where a channel stood still; what was learned from there is undone.
     cut_off : CutOff or None
         Where the output is cut off though the model goes on: a sensor at its end.
+    start : str
+        Where the operators began: of an unknown start, the one that was taken.
     covered : float
-        The share of the plane that the inputs covered, from 0 to 1.
+        The share of the plane's input range that the recordings cover, from 0 to 1.
     """
 
     whole: Compared
@@ -1492,6 +1494,7 @@ class AdaptedComparison(_Result):
     drift: Drift
     stuck: tuple[Stuck, ...]
     cut_off: CutOff | None
+    start: str
     covered: float
 
 

@@ -59,7 +59,8 @@ def test_bad_options_are_named(options, message):
 
 def heated():
     plain = json.loads(pyhysteron.Model(np.full(55, 0.1), (20, 80)).to_json())
-    body = {"kind": "first-order", "ambient": 15.0, "gain": 1.0, "tau_heating": 4.0, "tau_cooling": 9.0}
+    body = {"kind": "first-order", "ambient": 15.0, "gain": 1.0}
+    body |= {"tau_heating": 4.0, "tau_cooling": 9.0}
     model = plain | {"version": 2, "thermal": body, "drive": {"min": 0.0, "max": 80.0}}
     return pyhysteron.Model.from_json(json.dumps(model))
 
@@ -68,9 +69,11 @@ def test_the_body_of_a_model_is_led_within_the_drives():
     profile = pyhysteron.design_heated(heated(), range=(0, 80), levels=10)
     assert 0 <= profile.input.min() and profile.input.max() <= 80
     assert np.nanmin(profile.excitation) == 3
-    slower = pyhysteron.design_heated(heated(), range=(0, 80), levels=10, heating_rate=0.1, cooling_rate=0.1)
+    rates = {"heating_rate": 0.1, "cooling_rate": 0.1}
+    slower = pyhysteron.design_heated(heated(), range=(0, 80), levels=10, **rates)
     assert slower.duration > profile.duration
-    assert pyhysteron.design_heated(heated(), range=(0, 80), budget=profile.duration / 2).duration <= profile.duration / 2
+    budget = profile.duration / 2
+    assert pyhysteron.design_heated(heated(), range=(0, 80), budget=budget).duration <= budget
 
 
 @pytest.mark.parametrize(

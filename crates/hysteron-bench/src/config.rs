@@ -97,7 +97,8 @@ pub struct Profile {
     /// For `design`: the model whose plane the experiment is for.
     pub model: Option<PathBuf>,
     /// For `design`: how fast the drive rises and falls, in its unit per second. For a model with a
-    /// thermal body it is the temperature, and by default as fast as the limits of the drive allow.
+    /// thermal body these are rates of the temperature, in its unit per second; by default those
+    /// that `limits.drive`, or else the drives that it was fitted to, can give everywhere.
     pub rates: Option<(f64, f64)>,
 }
 

@@ -65,9 +65,14 @@ impl Course {
     }
 
     /// The experiment that determines a model on the plane of another one. Where a body heats, it is
-    /// planned in temperatures, and no drive leaves the limits.
+    /// planned in temperatures, and no drive leaves `limits.drive`, by default those that the model
+    /// was fitted to.
     fn designed(config: &Config, options: &Profile) -> Result<Self> {
-        let missing = |field| config.refused(field, "a design needs it");
+        let missing = |field| {
+            let what = "a design needs a model, and one without a thermal body how fast the drive \
+                        rises and falls: two numbers above zero";
+            config.refused(field, what)
+        };
         let model = options
             .model
             .as_ref()

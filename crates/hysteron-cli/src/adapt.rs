@@ -4,13 +4,13 @@ use crate::columns::{Given, Named};
 use crate::terminal::{Result, print};
 use crate::{args, model, recording, text};
 use hysteron::{
-    Adapted, Channel, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Stuck,
+    Adapted, Channel, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Start, Stuck,
     TableWriter,
 };
 use serde_json::{Value, json};
 use std::ops::Range;
 
-/// A recording that covers less of the plane is said to.
+/// A recording that covers less of the model's range is said to.
 const HALF: f64 = 0.5;
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
@@ -166,6 +166,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "worse": adapted.worse,
         "stuck": adapted.stuck,
         "cut_off": adapted.cut_off,
+        "start": adapted.start,
         "covered": adapted.covered,
         "probation": adapted.probation,
         "again": adapted.again,
@@ -284,10 +285,19 @@ fn to_text(
     lines.push(format!("the model moved: {}", drift(adapted)));
     // Where they do not refuse the model, they are told all the same.
     lines.extend(faults.iter().filter(|_| !refused).cloned());
+    lines.extend(
+        match adapted.start {
+            Start::Off if model.fitted().is_some() => Some("with all operators off"),
+            Start::On => Some("with all operators on"),
+            Start::Rest => Some("from a rest that was found"),
+            _ => None,
+        }
+        .map(|from| format!("the recording begins {from}: what that explains was not learned")),
+    );
     if adapted.covered < HALF {
         lines.push(format!(
-            "the input covered {:.0} % of the plane: what the model does beyond is a guess, and a \
-             stroke over the whole range would tell",
+            "the input covered {:.0} % of the model's range: what the model does beyond is a guess, \
+             and a stroke over the whole range would tell",
             100.0 * adapted.covered
         ));
     }

@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -114,17 +114,21 @@ fn looped(command: &str, folder: &Path, rate: f64, seconds: f64) -> Result<(Cloc
     };
     let mut run = Command::new(command);
     let run = run.arg("run").arg(&config).args(["--json", "--force"]);
-    let done = run.stderr(Stdio::null()).output()?;
-    said(&clocked).over = true;
+    let done = run.output()?;
+    locked(&clocked).over = true;
     let broke = |_| "the device broke";
     writes.join().map_err(broke)?;
     reads.join().map_err(broke)?;
-    let found = std::mem::take(&mut *said(&clocked));
+    if !done.status.success() {
+        let said = String::from_utf8_lossy(&done.stderr);
+        return Err(format!("{command} at {rate} Hz: {said}").into());
+    }
+    let found = std::mem::take(&mut *locked(&clocked));
     Ok((found, serde_json::from_slice(&done.stdout)?))
 }
 
-/// What the threads of a device share. One that broke has said so already.
-fn said(clocked: &Mutex<Clocked>) -> std::sync::MutexGuard<'_, Clocked> {
+/// The lock on what both threads share. It stays usable if one of them panics.
+fn locked(clocked: &Mutex<Clocked>) -> std::sync::MutexGuard<'_, Clocked> {
     clocked.lock().unwrap_or_else(|broken| broken.into_inner())
 }
 
@@ -133,7 +137,7 @@ fn read(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
     let Ok(lines) = board.try_clone() else { return };
     let mut lines = BufReader::new(lines);
     let mut line = String::new();
-    while !said(clocked).over {
+    while !locked(clocked).over {
         line.clear();
         // Until somebody has opened it, a pseudo-terminal ends at once.
         if lines.read_line(&mut line).unwrap_or(0) == 0 {
@@ -150,12 +154,12 @@ fn read(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
             )),
             ["Q"] => Some("E host".to_owned()),
             ["G"] => {
-                said(clocked).begun = true;
+                locked(clocked).begun = true;
                 None
             }
             ["D", n, drive] => {
                 if let (Ok(n), Ok(drive)) = (n.parse::<usize>(), drive.parse()) {
-                    let mut clocked = said(clocked);
+                    let mut clocked = locked(clocked);
                     clocked.drive = (n, drive);
                     let took = clocked.sent.get(n.wrapping_sub(1));
                     let took = took.map(|sent| now.duration_since(*sent).as_secs_f64());
@@ -171,7 +175,7 @@ fn read(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
             let quits = answer.starts_with('E');
             let _ = board.write_all(closed(&answer).as_bytes());
             if quits {
-                said(clocked).over = true;
+                locked(clocked).over = true;
             }
         }
     }
@@ -179,8 +183,8 @@ fn read(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
 
 /// Samples by its own clock, whatever the host does.
 fn write(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
-    while !said(clocked).begun {
-        if said(clocked).over {
+    while !locked(clocked).begun {
+        if locked(clocked).over {
             return;
         }
         std::thread::sleep(Duration::from_millis(1));
@@ -191,7 +195,7 @@ fn write(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
         let due = begun + Duration::from_secs_f64(n as f64 / rate);
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
         let text = {
-            let mut clocked = said(clocked);
+            let mut clocked = locked(clocked);
             if clocked.over {
                 return;
             }
@@ -211,10 +215,8 @@ fn write(mut board: File, rate: f64, clocked: &Mutex<Clocked>) {
 
 fn print(seconds: f64, loops: &[(Clocked, Value)]) {
     println!("{}", include_str!("text/jitter.md").trim_end());
-    println!(
-        "\nHere each ran for {seconds:.0} s.\n\n| | {} |",
-        RATES.map(|rate| format!("{rate:.0} Hz")).join(" | ")
-    );
+    let heading = RATES.map(|rate| format!("{rate:.0} Hz")).join(" | ");
+    println!("\nHere each ran for {seconds:.0} s.\n\n| | {heading} |");
     println!("| --- | ---: | ---: | ---: |");
     let row = |name: &str, cell: &dyn Fn(usize) -> String| {
         let cells: Vec<String> = (0..loops.len()).map(cell).collect();
@@ -237,6 +239,11 @@ fn print(seconds: f64, loops: &[(Clocked, Value)]) {
     row("samples", &|k| loops[k].1["samples"].to_string());
     row("samples that the host missed", &|k| {
         loops[k].1["lost"].to_string()
+    });
+    row("samples without an answer, but for the last", &|k| {
+        let answered = &loops[k].0.answered;
+        let all = answered.iter().take(answered.len().saturating_sub(1));
+        all.filter(|took| took.is_none()).count().to_string()
     });
     row("answers later than the next sample", &|k| {
         let interval = 1e3 / RATES[k];
@@ -262,7 +269,7 @@ fn print(seconds: f64, loops: &[(Clocked, Value)]) {
     row("how the run ended", &|k| {
         loops[k].1["end"].as_str().unwrap_or("").into()
     });
-    println!("\nHow many answers took how long:\n\n| up to | 10 Hz | 100 Hz | 1000 Hz |");
+    println!("\nHow many answers took how long:\n\n| up to | {heading} |");
     println!("| --- | ---: | ---: | ---: |");
     let mut from = 0.0;
     for to in CLASSES {

@@ -1,6 +1,6 @@
 //! `adapt`.
 
-use crate::choices::{ADAPT_STARTS, choice, learner, named, no_argument, start_of};
+use crate::choices::{LOOP_STARTS, STARTS, choice, learner, named, no_argument};
 use crate::convert::{result, to_python};
 use crate::error::Raise;
 use crate::inputs::recordings_of;
@@ -78,10 +78,10 @@ impl Adapted {
 ///     shift of the input axis alone, by a load that nobody measures, and runs any model; then the
 ///     table also has 'shift_model', in the input's unit, and 'load_model', if the model's shift
 ///     tells a load.
-/// start : {'fitted', 'off', 'on', 'unknown'}
+/// start : {'fitted', 'off', 'on', 'rest', 'unknown'}
 ///     State of the operators before the first sample. 'fitted': the one that the model's fit
-///     found, all off if it found none. 'unknown': whichever of these gives the smallest error of
-///     the model as it is.
+///     found, all off if it found none. 'rest': all off, then at rest at an input or two that are
+///     found. 'unknown': 'fitted', unless the model as it is errs 1.5 times less from another.
 /// progress : callable, bool or None
 ///     As for `fit`. Ctrl-C ends the work in any case.
 /// window, every, ridge, gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
@@ -112,8 +112,8 @@ impl Adapted {
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (model, recording, output=None, *, time=None, method="auto", start="fitted", progress=None, **options),
-    text_signature = "(model, recording, output=None, *, time=None, method='auto', start='fitted', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
+    signature = (model, recording, output=None, *, time=None, method="auto", start="unknown", progress=None, **options),
+    text_signature = "(model, recording, output=None, *, time=None, method='auto', start='unknown', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
 )]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn adapt<'py>(
@@ -157,6 +157,7 @@ pub(crate) fn adapt<'py>(
     comparison.set_item("drift", to_python(py, &adapted.drift)?)?;
     comparison.set_item("stuck", to_python(py, &adapted.stuck)?)?;
     comparison.set_item("cut_off", to_python(py, &adapted.cut_off)?)?;
+    comparison.set_item("start", to_python(py, &adapted.start)?)?;
     comparison.set_item("covered", adapted.covered)?;
     table.set_item("output_model", PyArray1::from_vec(py, adapted.output_model))?;
     if let Some(found) = adapted.shift {
@@ -182,9 +183,8 @@ pub(crate) fn adapt_options(
     let mut options = AdaptOptions {
         learner: learner(method)?,
         start: match call {
-            "adapt" => choice("start", start, &ADAPT_STARTS)?,
-            // A loop begins with all operators off or on.
-            _ => start_of(start)?,
+            "adapt" => choice("start", start, &STARTS)?,
+            _ => choice("start", start, &LOOP_STARTS)?,
         },
         ..AdaptOptions::default()
     };

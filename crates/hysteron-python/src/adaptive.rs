@@ -141,11 +141,6 @@ impl Adaptive {
         start: &str,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        if start == "unknown" {
-            return Err(PyValueError::new_err(
-                "`start` is 'unknown': one of 'off', 'on' is needed",
-            ));
-        }
         let options = adapt_options(("Adaptive", &[]), method, start, options)?;
         let model = &model.inner;
         Ok(detached(py, || options.adaptive(model)).raise()?.into())
@@ -325,7 +320,8 @@ impl Adaptive {
     /// Move the inverse to where the measured input is.
     ///
     /// The inverse remembers turning points that came from older weights, until larger swings wipe
-    /// them out. A loop may call this wherever its target turns.
+    /// them out. A loop may call this where its target turns and the
+    /// model expects what is measured.
     ///
     /// Examples
     /// --------

@@ -9,7 +9,6 @@ use crate::model::Model;
 use crate::pool::detached;
 use crate::shared::Shared;
 use hysteron::{Sample, Wanted};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -97,11 +96,6 @@ impl AdaptiveLoad {
         start: &str,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        if start == "unknown" {
-            return Err(PyValueError::new_err(
-                "`start` is 'unknown': one of 'off', 'on' is needed",
-            ));
-        }
         let options = adapt_options(("AdaptiveLoad", &[]), "load", start, options)?;
         let model = &model.inner;
         Ok(detached(py, || options.adaptive_load(model))

@@ -108,13 +108,8 @@ pub(crate) const STARTS: [(&str, Start); 5] = [
     ("unknown", Start::Unknown),
 ];
 
-/// Those of a model that adapts: nothing is found then.
-pub(crate) const ADAPT_STARTS: [(&str, Start); 4] = [
-    ("fitted", Start::Fitted),
-    ("off", Start::Off),
-    ("on", Start::On),
-    ("unknown", Start::Unknown),
-];
+/// Those of a loop, which has no recording to find one from.
+pub(crate) const LOOP_STARTS: [(&str, Start); 2] = [("off", Start::Off), ("on", Start::On)];
 
 /// The same before there is a model that starts somewhere.
 pub(crate) fn start_of(name: &str) -> PyResult<Start> {

@@ -197,7 +197,8 @@ pub(crate) fn design(
 ///
 /// It is planned in temperatures, within the model's range and 5 % inside of what the drives can
 /// hold, and given as the drives that make the body follow it. The first drive holds the first
-/// temperature: begin at rest there. `Design.legs` are in temperatures.
+/// temperature: begin at rest there. `Design.legs` are in temperatures. Heat that the operators bind
+/// is left out of the plan.
 ///
 /// Parameters
 /// ----------
@@ -206,13 +207,14 @@ pub(crate) fn design(
 /// range : tuple of float, optional
 ///     Lowest and highest drive; by default those of the recording that was fitted.
 /// levels : int
+///     Of the plane that is planned for, 2 or more; by default 20.
 /// heating_rate, cooling_rate : float, optional
 ///     How fast the temperature rises and falls, in its unit per second; by default as fast as the
 ///     drives can everywhere. Give both or none.
 /// budget : float, optional
-///     Longest duration, s. By default all that it takes.
+///     Longest duration, s, above zero. By default all that it takes.
 /// step : float, optional
-///     Longest time between samples, s; by default ten samples a level.
+///     Longest time between samples, s, above zero; by default ten samples a level.
 ///
 /// Returns
 /// -------

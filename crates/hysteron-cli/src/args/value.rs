@@ -75,9 +75,10 @@ pub(crate) enum AdaptStart {
     Off,
     /// All on, as after the highest input
     On,
-    /// Found: all off, then at rest at one input or two, before the first sample
+    /// Found: all off, then at rest at one input or two, before the first sample; not with the
+    /// method `load`
     Rest,
-    /// The fitted one, unless another of these gives the model as it is a clearly smaller error
+    /// The fitted one, unless the model as it is errs 1.5 times less from another of these
     Unknown,
 }
 

@@ -391,9 +391,9 @@ fn the_end_of_a_sensor_is_not_learned_unasked() {
     assert!(said["cut_off"].is_null());
 }
 
-/// What a small part of the plane teaches is a guess elsewhere, and the command says so.
+/// What a small part of the range teaches is a guess elsewhere, and the command says so.
 #[test]
-fn how_much_of_the_plane_was_covered_is_told() {
+fn how_much_of_the_range_was_covered_is_told() {
     let folder = wires();
     let mut play = 20.0_f64;
     let mut table = String::from("t,x,y\n");
@@ -405,7 +405,7 @@ fn how_much_of_the_plane_was_covered_is_told() {
     fs::write(folder.path().join("after.csv"), table).unwrap();
     let done = run(folder.path(), &format!("{ADAPT} --force"));
     assert!(
-        text(&done.stdout).contains("the input covered 22 % of the plane"),
+        text(&done.stdout).contains("the input covered 22 % of the model's range"),
         "{}",
         text(&done.stdout)
     );

@@ -175,7 +175,7 @@ fn learners_have_one_table() {
             "{said}"
         );
     }
-    assert!(PYTHON_ADAPT.contains("method='auto'") && PYTHON_ADAPT.contains("start='fitted'"));
+    assert!(PYTHON_ADAPT.contains("method='auto'") && PYTHON_ADAPT.contains("start='unknown'"));
 }
 
 #[test]

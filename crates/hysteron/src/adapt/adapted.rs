@@ -1,7 +1,7 @@
 //! What an adaptation gives: the model, and its errors beside those of the model left alone.
 
 use super::{Drift, EstimatorOptions, OutcomeCounts, ShiftFound, Stuck};
-use crate::model::Model;
+use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::{CutOff, Errors};
 use hysteron_core::Outcome;
@@ -61,8 +61,10 @@ pub struct Adapted {
     /// Where the output is cut off, though the model goes on by more than 1 % of its range: a
     /// sensor at its end. The model has learned that end. `None` where it is not.
     pub cut_off: Option<CutOff>,
-    /// The share of the plane that the inputs covered, from 0 to 1. What the model does beyond, no
-    /// reading says.
+    /// Where the operators began: of an unknown start, the one that was taken.
+    pub start: Start,
+    /// The share of the plane's input range that the recordings cover, from 0 to 1. What the model
+    /// does beyond, no reading says.
     pub covered: f64,
     /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty
     /// for the other learners. *trend* is the refit, and half as far beyond it as it moved in a
@@ -88,11 +90,6 @@ impl Compared {
     /// By how much the adapting model has larger errors, as a share of the model's range.
     pub(super) fn loss(&self, (off, on): (f64, f64)) -> f64 {
         (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
-    }
-
-    /// Whether what learned is the worse one.
-    pub(super) fn is_harm(&self) -> bool {
-        self.adapting.rmse > self.fixed.rmse
     }
 
     /// Whether what learned says nothing of outputs of that `spread`.

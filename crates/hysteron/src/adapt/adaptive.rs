@@ -360,7 +360,7 @@ impl Adaptive {
 
     /// Sets the state of the inverse to that of the measured input. Otherwise, turning points that
     /// the inverse asked for with old weights stay in its memory until they are wiped out. A loop
-    /// may call this wherever its target turns.
+    /// may call this where its target turns and the model expects what is measured.
     pub fn align(&mut self) {
         self.wanted.clone_from(&self.state);
     }

@@ -73,7 +73,9 @@ pub(super) struct Learned {
     pub(super) still: usize,
     /// The samples over which the output was held.
     pub(super) held: Vec<Range<usize>>,
-    /// The share of the plane that the inputs covered.
+    /// As [`Adapted::start`].
+    pub(super) taken: Start,
+    /// As [`Adapted::covered`].
     pub(super) covered: f64,
     pub(super) shares: Vec<(&'static str, f64)>,
     pub(super) shift: Option<ShiftFound>,
@@ -165,7 +167,9 @@ impl Learned {
         Ok(Adapted {
             worse: is_worse(late.as_ref(), changed, offline.output_range())
                 || late.is_some_and(|late| late.says_nothing(late_spread))
-                || stays && again_late.is_some_and(|again| again.is_harm())
+                || stays
+                    && again_late
+                        .is_some_and(|again| again.loss(offline.output_range()) > ROUNDING)
                 || stays
                     && again_first.is_some_and(|first| first.loss(offline.output_range()) > SPOILT)
                     && !is_of_use(latest.as_ref(), again_late.as_ref()),
@@ -184,6 +188,7 @@ impl Learned {
             again_late,
             again_first,
             late_spread,
+            start: self.taken,
             covered: self.covered,
             shares: self.shares,
             shift: self.shift,

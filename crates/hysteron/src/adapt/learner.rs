@@ -230,11 +230,12 @@ macro_rules! options {
             /// Which parameters are adapted, and by which method. Default `auto`.
             #[serde(rename = "method")]
             pub learner: Learner,
-            /// State of the operators before the first sample of a recording. Default `unknown`: that
-            /// of the fit, unless off, on or the rest before the first recording leaves clearly
-            /// smaller errors of the unadapted model. What a start explains is not learned. A loop
-            /// begins with all operators off, unless they are told to be on, and [`Learner::Auto`]
-            /// waits there while another start would still make a difference.
+            /// State of the operators before the first sample of a recording. Default `unknown`:
+            /// that of the fit, unless the unadapted model errs 1.5 times less with all off, all on
+            /// or, but for [`Learner::Load`], from a rest before the first recording. What a start
+            /// explains is not learned. A loop begins with all operators off, unless they are told
+            /// to be on, and [`Learner::Auto`] waits there while another start would still make a
+            /// difference.
             pub start: Start,
             $(
                 #[doc = concat!($purpose, ". ", $range, ". Default: ", $default, ".")]

@@ -175,11 +175,7 @@ impl Mixture {
         let from = state.position();
         let step = core.step(state, input)?;
         let distance = (state.position() - from).abs();
-        if let Some(unsure) = &mut self.unsure
-            && !unsure.step(core, input, step.output)?
-        {
-            self.unsure = None;
-        }
+        self.look_at_start(state)?;
         let part = if self.frozen {
             LEAST
         } else {
@@ -347,8 +343,21 @@ impl Mixture {
         Ok(())
     }
 
+    /// Whether it still matters how the operators began. The first expert is the model as it was,
+    /// and as long as it matters, as it is.
+    fn look_at_start(&mut self, state: &OperatorState) -> Result<()> {
+        let core = &self.experts[0].core;
+        if let Some(unsure) = &mut self.unsure
+            && !unsure.step(core, state)?
+        {
+            self.unsure = None;
+        }
+        Ok(())
+    }
+
     /// Others moved the state along its branches.
     pub(super) fn follow(&mut self, state: &OperatorState) -> Result<()> {
+        self.look_at_start(state)?;
         for expert in &mut self.experts {
             expert.move_to(state)?;
             expert.learns.follow(&expert.state)?;

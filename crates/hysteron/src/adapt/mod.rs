@@ -7,9 +7,9 @@
 //! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
 //! samples of a `window`, from their `sums`. `mixture` has several of these side by side, each an
 //! `expert` with one of the `shares`, counts in `strokes` how far the input went, and waits while it
-//! is `unsure` how the operators began; `learns` is the choice among all of these. `load` and `unknown_load` do the same for the shift of an unknown
-//! load. `counts` counts what was done with the samples, `stuck` finds where a channel stood still,
-//! and `drift` tells how far the model moved.
+//! is `unsure` how the operators began; `learns` is the choice among all of these. `load` and
+//! `unknown_load` do the same for the shift of an unknown load. `counts` counts what was done with
+//! the samples, `stuck` finds where a channel stood still, and `drift` tells how far the model moved.
 
 mod adapted;
 mod adaptive;
@@ -47,16 +47,13 @@ pub use unknown_load::ShiftFound;
 pub use window::Window;
 
 use crate::error::{Error, Result};
+use crate::evaluate::OTHER_START;
 use crate::identify::find_rest;
 use crate::model::{Model, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
 use learned::{Learned, covered};
 use std::ops::Range;
-
-/// Another start is taken where the model errs 1.5 times less from there, by this share of the squared
-/// error. Under another load a start explains a little that is none.
-const CLEARLY: f64 = 1.0 / (1.5 * 1.5);
 
 /// Runs an estimator over a recording. For each sample it returns the expected output before it
 /// learns from the measured one. Several recordings are parts of one experiment, such as the segments
@@ -133,7 +130,12 @@ fn learn(
         Start::Unknown => vec![Start::Fitted, Start::Off, Start::On, Start::Rest],
         start => vec![start],
     };
-    let (offline, start, fixed) = fixed(&offline, recordings, starts)?;
+    let Begun {
+        model: offline,
+        start,
+        taken,
+        output: fixed,
+    } = begun(&offline, recordings, starts)?;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
@@ -188,6 +190,7 @@ fn learn(
     Ok(Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
         start,
+        taken,
         covered: covered(&offline, &joined.input),
         offline,
         last,
@@ -244,17 +247,23 @@ fn no_samples() -> Error {
     Error::Fit("no samples".into())
 }
 
-/// Which of `starts` leaves the fixed model the least errors, a model that knows that start, and its
-/// outputs from there. An earlier one gives way only to one that is clearly better.
-fn fixed(
-    model: &Model,
-    recordings: &[Recording],
-    starts: Vec<Start>,
-) -> Result<(Model, Start, Vec<f64>)> {
-    let mut least = None;
-    let mut bound = f64::INFINITY;
-    for start in starts {
-        let (model, start) = match start {
+/// Where the operators begin, and the fixed model from there.
+struct Begun {
+    /// The model, which knows that start.
+    model: Model,
+    /// Its start, of that model.
+    start: Start,
+    /// The start that was taken.
+    taken: Start,
+    output: Vec<f64>,
+}
+
+/// The first of `starts`, or the one among the others that leaves the fixed model the least errors,
+/// if these are much less ([`OTHER_START`]).
+fn begun(model: &Model, recordings: &[Recording], starts: Vec<Start>) -> Result<Begun> {
+    let mut found: Vec<(f64, Begun)> = Vec::new();
+    for taken in starts {
+        let (model, start) = match taken {
             // One rest stands for all recordings, as one start does in a model.
             Start::Rest => {
                 let (rested, _) = find_rest(model, &recordings[0])?;
@@ -265,12 +274,33 @@ fn fixed(
         };
         let output = run_from(&model, start, recordings)?;
         let measured = recordings.iter().flat_map(|r| &r.output);
-        let error: f64 = measured.zip(&output).map(|(y, h)| (y - h).powi(2)).sum();
-        if least.is_none() || error < bound {
-            (least, bound) = (Some((model, start, output)), CLEARLY * error);
+        let squares: f64 = measured.zip(&output).map(|(y, h)| (y - h).powi(2)).sum();
+        let begun = Begun {
+            model,
+            start,
+            taken,
+            output,
+        };
+        // Squares that cannot be summed are the worst.
+        let error = if squares.is_finite() {
+            squares.sqrt()
+        } else {
+            f64::INFINITY
+        };
+        let least = found
+            .iter()
+            .skip(1)
+            .map(|(error, _)| *error)
+            .fold(f64::INFINITY, f64::min);
+        if found.len() < 2 {
+            found.push((error, begun));
+        } else if error < least {
+            found[1] = (error, begun);
         }
     }
-    least.ok_or_else(no_samples)
+    let other = matches!(found[..], [(first, _), (other, _)] if OTHER_START * other < first);
+    let found = found.into_iter().nth(usize::from(other));
+    found.map(|(_, begun)| begun).ok_or_else(no_samples)
 }
 
 /// The outputs of a model that starts so in each recording.

@@ -1,8 +1,10 @@
 //! The method `load` over a recording: an estimate of the shift, sample by sample.
 
 use super::stuck::at_the_end;
-use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, covered, fixed, on_probation, run_from};
-use crate::error::Result;
+use super::{
+    AdaptOptions, Adapted, AdaptiveLoad, Begun, Learned, begun, covered, on_probation, run_from,
+};
+use crate::error::{Error, Result};
 use crate::model::{Model, Start, Surroundings};
 use crate::progress::{Progress, SAMPLES_BETWEEN};
 use crate::recording::Recording;
@@ -38,12 +40,28 @@ pub(super) fn adapt(
         Some(load) => model.at_load(load)?,
         None => model.clone(),
     };
-    // A rest would be found on an axis that has not moved yet.
     let starts = match options.start {
         Start::Unknown => vec![Start::Fitted, Start::Off, Start::On],
+        Start::Rest => {
+            let what = "no rest is found on an axis that shifts: take the start fitted, off, on or \
+                        unknown";
+            return Err(Error::Fit(what.into()));
+        }
         start => vec![start],
     };
-    let (offline, start, fixed) = fixed(&offline, recordings, starts)?;
+    let Begun {
+        model: offline,
+        start,
+        taken,
+        output: fixed,
+    } = begun(&offline, recordings, starts)?;
+    let around = |one| Surroundings {
+        load: None,
+        ..Surroundings::from_recording(model, one)
+    };
+    let seen = recordings.iter();
+    let seen = seen.map(|one| offline.seen(&one.input, around(one)));
+    let seen = seen.collect::<Result<Vec<_>>>()?.concat();
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
@@ -55,11 +73,7 @@ pub(super) fn adapt(
     let mut last = adaptive.clone();
     for recording in recordings {
         adaptive.start_from(start);
-        let around = Surroundings {
-            load: None,
-            ..Surroundings::from_recording(model, recording)
-        };
-        for (n, sample) in around.samples(model, &recording.input)? {
+        for (n, sample) in around(recording).samples(model, &recording.input)? {
             let done = learned.len();
             if done % SAMPLES_BETWEEN == 0 {
                 progress.tell("adaptation", done as f64 / count as f64)?;
@@ -93,7 +107,8 @@ pub(super) fn adapt(
     Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
         start,
-        covered: covered(&offline, &joined.input),
+        taken,
+        covered: covered(&offline, &seen),
         offline,
         last,
         learned,

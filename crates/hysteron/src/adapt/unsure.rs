@@ -10,7 +10,8 @@ use crate::series::Turning;
 /// full stroke ends that.
 const MATTERS: f64 = 0.05;
 
-/// After so many turns of the input it is taken as known: a loop inside the plane never tells.
+/// After so many turning points, of which the first sample is one, it is taken as known: a loop
+/// inside the plane never tells.
 const TURNS: usize = 4;
 
 /// The operators as they were if they had begun all on, beside those that began all off.
@@ -32,16 +33,18 @@ impl Unsure {
         }
     }
 
-    /// Goes on to `input`, which gives `output` from the usual start. Returns whether it still
-    /// matters.
+    /// Goes on to where `state` is, from the usual start. Returns whether it still matters.
     ///
     /// # Errors
     /// As [`crate::Model::step`].
-    pub(super) fn step(&mut self, core: &Core, input: f64, output: f64) -> Result<bool> {
+    pub(super) fn step(&mut self, core: &Core, state: &OperatorState) -> Result<bool> {
         core.rebase(&mut self.on)?;
-        let other = core.step(&mut self.on, input)?.output;
+        let mut here = state.clone();
+        core.rebase(&mut here)?;
+        let other = core.step(&mut self.on, state.input())?.output;
         self.turns += usize::from(self.turning.push(self.on.position()).is_some());
         let (low, high) = core.output_range();
-        Ok((other - output).abs() > MATTERS * (high - low) && self.turns < TURNS)
+        let difference = (other - core.output(&here)).abs();
+        Ok(difference > MATTERS * (high - low) && self.turns < TURNS)
     }
 }

@@ -15,7 +15,7 @@ use super::trust::Trust;
 use crate::adapt::{Adaptive, AdaptiveLoad};
 use crate::error::{Error, Result};
 use crate::model::{Delay, Model, Policy, Sample, Sign, State, Wanted};
-use crate::series::Turning;
+use crate::series::{NOISE, Turning};
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
 /// Learning moves the expected output slightly up and down. While the target itself has not turned,
@@ -381,7 +381,8 @@ impl Compensator {
         let branch = branch.branch();
         // Where the model expects something else than is measured, a feedback has made up for that.
         // An inverse that sets out from the drive would make up for it once more.
-        let expects = self.missed <= tolerance;
+        let (off, on) = self.output_range();
+        let expects = self.missed <= tolerance.max(NOISE * (on - off).abs());
         if turns && expects && !matches!(self.kind, Kind::Fixed { .. }) {
             self.set_out_again();
         }

@@ -8,4 +8,4 @@ mod one;
 pub(crate) use joined::over_all;
 pub use joined::{evaluate, evaluate_errors, evaluate_from};
 pub use one::{Evaluation, InverseEvaluation, InverseRun};
-pub(crate) use one::{begin, compare};
+pub(crate) use one::{OTHER_START, begin, compare};

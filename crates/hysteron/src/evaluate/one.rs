@@ -9,6 +9,10 @@ use crate::series::range;
 use crate::series::{NOISE, Turning};
 use hysteron_core::Solution;
 
+/// A model begins elsewhere than its actuator did if it errs so many times less from another start.
+/// Under another load a start explains a little that is none.
+pub(crate) const OTHER_START: f64 = 1.5;
+
 /// The output stands still while it is within this share of its range from a turning point. The
 /// value is twice the noise: after a reversal, the inverse is back on the branch only when the
 /// output has moved further than the noise.

@@ -114,7 +114,7 @@ pub(crate) fn find_rest(model: &Model, recording: &Recording) -> Result<(State, 
     let samples = beginning(&seen);
     let head = recording.part(0..samples);
     let error = |rest| squares(model, after(model, rest)?, &head);
-    // Before a small loop it may have been anywhere.
+    // Before a small loop the input may have rested anywhere on the plane.
     let (low, high) = range(&seen);
     let plane = model.plane();
     let (rest, _) = search((low.min(plane.min()), high.max(plane.max())), error)?;

@@ -4,7 +4,7 @@ use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind, parts_after};
 use super::tested::BEYOND;
 use crate::error::Result;
-use crate::evaluate::Evaluation;
+use crate::evaluate::{Evaluation, OTHER_START};
 use crate::forward::forward;
 use crate::hold_out::HeldOut;
 use crate::identify::kept::{DIFFERENT, UNDONE_LAG, speed_fitted};
@@ -147,8 +147,6 @@ pub(super) const OUTSIDE: f64 = 0.2;
 const BELONGS: f64 = 80.0;
 /// A model that explains less than this of the squared deviations is of something else.
 const FOLLOWED: f64 = 0.2;
-/// A start is worth a sentence if the model errs so many times less from there.
-const OTHER: f64 = 1.5;
 /// A part of this share is worth a sentence.
 pub(super) const WORTH: f64 = 0.25;
 /// A delay of fewer samples is none.
@@ -397,18 +395,21 @@ pub(super) fn other_start(
     recordings: &[Recording],
     errors: &Errors,
 ) -> Result<Option<Cause>> {
-    let mut least = (errors.rmse / OTHER, None);
-    for start in [Start::Off, Start::On, Start::Rest] {
+    let mut least = (errors.rmse / OTHER_START, None);
+    for start in [Start::Fitted, Start::Off, Start::On, Start::Rest] {
         let found = forward(model, recordings, start)?.errors;
-        if found.rmse < least.0 {
-            least = (found.rmse, Some((start, found)));
+        let percent = found.nrmse_percent.filter(|_| found.rmse < least.0);
+        if let Some(percent) = percent {
+            let share = 1.0 - (found.rmse / errors.rmse).powi(2);
+            let cause = Cause::OtherStart {
+                start,
+                percent,
+                share,
+            };
+            least = (found.rmse, Some(cause));
         }
     }
-    Ok(least.1.map(|(start, found)| Cause::OtherStart {
-        start,
-        percent: found.nrmse_percent.unwrap_or_default(),
-        share: 1.0 - (found.rmse / errors.rmse).powi(2),
-    }))
+    Ok(least.1)
 }
 
 /// Whether a model has what at one speed is not told from a wider loop.

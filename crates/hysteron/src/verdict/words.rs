@@ -26,6 +26,17 @@ fn is_few(cause: &Cause) -> bool {
     matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. })
 }
 
+/// The word for a start, and what it says.
+fn start_words(start: Start) -> (&'static str, &'static str) {
+    match start {
+        Start::Off => ("off", "with all operators off"),
+        Start::On => ("on", "with all operators on"),
+        Start::Fitted => ("fitted", "from the start of its fit"),
+        Start::Rest => ("rest", "from a rest before the first sample"),
+        Start::Unknown => ("unknown", "from a start that is found"),
+    }
+}
+
 impl Grade {
     /// The word, and what the model is good for.
     #[must_use]
@@ -153,11 +164,7 @@ impl Verdict {
             ),
             Cause::OtherStart { start, percent, .. } => format!(
                 "the model begins elsewhere than the actuator did: {}, it errs {percent:.2} %",
-                match start {
-                    Start::Off => "with all operators off",
-                    Start::On => "with all operators on",
-                    _ => "from a rest before the first sample",
-                }
+                start_words(*start).1
             ),
             Cause::LagLeft { tau } => format!(
                 "the model was fitted with a lag of {} s of the input's sensor undone, and here it \
@@ -397,18 +404,11 @@ impl Verdict {
             Some(Cause::Readings {
                 samples, replaced, ..
             }) => remedy_of_readings(*samples, *replaced),
-            Some(Cause::OtherStart { start, .. }) => {
-                let start = match start {
-                    Start::Off => "off",
-                    Start::On => "on",
-                    _ => "rest",
-                };
-                Remedy::new(
-                    "evaluate it with {}; a stroke over the whole range, there and back, brings \
+            Some(Cause::OtherStart { start, .. }) => Remedy::new(
+                "evaluate it with {}; a stroke over the whole range, there and back, brings \
                      actuator and model together",
-                    [Setting::word("start", start)],
-                )
-            }
+                [Setting::word("start", start_words(*start).0)],
+            ),
             Some(Cause::LagLeft { .. }) => Remedy::new(
                 "undo it here too, with {} and that time constant",
                 [Setting::any("sensor-lag")],

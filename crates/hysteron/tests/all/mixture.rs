@@ -226,3 +226,52 @@ fn the_model_of_a_mixture_has_an_inverse_at_every_instant() {
         }
     }
 }
+
+/// A loop is not told how the operators began. What another start explains is not learned before it
+/// is forgotten, by readings or without them; what is left then is a change.
+#[test]
+fn a_loop_waits_until_its_start_is_forgotten() {
+    let mut waited = 0;
+    for seed in 0..20 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let plant = actuator(&mut rng);
+        let (low, high) = (plant.plane().min(), plant.plane().max());
+        let at = |share: f64| low + share * (high - low);
+        let (mut state, mut off) = (plant.saturated(), plant.off());
+        let (first, last) = plant.output_range();
+        let mut adaptive = AdaptOptions::default().adaptive(&plant).unwrap();
+        let (mut least, mut missed) = (f64::INFINITY, f64::NAN);
+        // From the middle up, and back: one turn, which does not reach the end.
+        let ramp =
+            |from: f64, to: f64| (0..=40).map(move |n| from + (to - from) * f64::from(n) / 40.0);
+        for share in ramp(0.4, 0.7).chain(ramp(0.7, 0.5)) {
+            let output = plant.step(&mut state, at(share)).unwrap().output;
+            let other = plant.step(&mut off, at(share)).unwrap().output;
+            least = least.min((output - other).abs() / (last - first).abs());
+            adaptive.step(at(share), output).unwrap();
+        }
+        // Where the ridge ends below 0.7, the start is forgotten there.
+        if least > 0.05 {
+            let model = adaptive.model().unwrap();
+            assert!(model.weights() == plant.weights(), "seed {seed}");
+            assert_eq!(model.offset(), plant.offset(), "seed {seed}");
+            waited += 1;
+        }
+        // A full stroke without readings, and then another offset.
+        for share in ramp(0.5, 1.0).chain(ramp(1.0, 0.0)) {
+            plant.step(&mut state, at(share)).unwrap();
+            adaptive.simulate(at(share)).unwrap();
+        }
+        for share in ramp(0.0, 1.0).chain(ramp(1.0, 0.0)).chain(ramp(0.0, 1.0)) {
+            let output = plant.step(&mut state, at(share)).unwrap().output + 1.0;
+            adaptive.step(at(share), output).unwrap();
+        }
+        // In the middle of the stroke the model as it was misses the offset of 1.
+        for share in ramp(1.0, 0.5) {
+            let output = plant.step(&mut state, at(share)).unwrap().output + 1.0;
+            missed = output - adaptive.simulate(at(share)).unwrap();
+        }
+        assert!(missed.abs() < 0.3, "seed {seed}: {missed}");
+    }
+    assert!(waited >= 5, "{waited}");
+}

@@ -2,7 +2,8 @@
 
 use hysteron::{
     AdaptOptions, Adapted, AdaptiveLoad, CreepTerm, EstimatorOptions, FirstOrder, Learner, Model,
-    Operator, Outcome, Plane, Progress, Recording, Sample, Sign, Surroundings, Target, adapt,
+    Operator, Outcome, Plane, Progress, Recording, Sample, Sign, Start, Surroundings, Target,
+    adapt,
 };
 
 const DT: f64 = 0.1;
@@ -84,6 +85,8 @@ fn a_shift_is_found_through_body_spacing_creep_and_lag() {
                     "{spaced} {shift}: {last:?}"
                 );
                 assert!(!adapted.worse);
+                // Of the temperatures, and not of the drives.
+                assert!(adapted.covered > 0.5, "{}", adapted.covered);
                 // What is written is the plant: its levels moved, its stages as they were.
                 let range = 0.02 * 210.0;
                 assert!(adapted.again.rmse < 0.005 * range, "{:?}", adapted.again);
@@ -143,6 +146,14 @@ fn what_it_cannot_have_is_refused_and_nothing_changes() {
         ..by_load()
     };
     assert!(gain.adaptive_load(&model).is_err());
+
+    let rest = AdaptOptions {
+        start: Start::Rest,
+        ..by_load()
+    };
+    let told = recording(&staged(0.0, false, Sign::Positive), 200);
+    let refused = adapt(&plain(20.0, Sign::Positive), &told, &rest, Progress::NONE);
+    assert!(refused.unwrap_err().to_string().contains("no rest"));
 
     let mut timed = by_load()
         .adaptive_load(&staged(0.0, false, Sign::Positive))

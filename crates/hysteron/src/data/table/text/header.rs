@@ -61,8 +61,8 @@ impl Line {
 ///
 /// The header is the first line that satisfies all of these: it has as many cells as most lines,
 /// all its cells are names, and the rows below it look like most rows. A row of units may be
-/// between. If there is no such line, the header is the first line, unless that line holds numbers,
-/// or is a text in a single cell above rows of numbers.
+/// between. If there is no such line, the header is the first line, unless that line looks like most
+/// rows, or is a text in a single cell above rows of numbers.
 pub(super) fn find(lines: &[Line]) -> (Header, usize) {
     let labview = labview(lines);
     let found = labview.or_else(|| above_the_usual(lines));
