@@ -138,8 +138,8 @@ def test_a_refit_has_the_last_samples(sign):
 def test_copies_go_their_own_ways():
     one = pyhysteron.Adaptive(model())
     for other in [one.copy(), copy.copy(one), copy.deepcopy(one)]:
-        other.step(70.0, 20.0)
-        assert other.offset != one.offset and one.input != 70.0
+        other.step(80.0, 20.0)
+        assert other.offset != one.offset and one.input != 80.0
 
 
 def test_it_cannot_be_pickled_but_its_model_can():

@@ -483,8 +483,8 @@ impl Adaptive {
     /// --------
     /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> other = adaptive.copy()
-    /// >>> _ = adaptive.step(0.5, 4.5)
-    /// >>> adaptive.output > 4 and other.simulate(0.5) == 4
+    /// >>> _ = adaptive.step(1.0, 7.5)  # all on, however it began
+    /// >>> adaptive.output > 7 and other.simulate(1.0) == 7
     /// True
     fn copy(&self, py: Python<'_>) -> Self {
         self.now(py).into()
