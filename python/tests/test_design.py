@@ -81,7 +81,7 @@ def test_the_body_of_a_model_is_led_within_the_drives():
     [
         ({"heating_rate": 0.1}, "both"),
         ({"heating_rate": 1e3, "cooling_rate": 0.1}, "slower rates"),
-        ({"range": (0, 4)}, "no operator"),
+        ({"range": (-20, -10)}, "no operator"),
         ({"levels": 1}, "levels"),
     ],
 )
