@@ -1456,7 +1456,8 @@ class AdaptedComparison(_Result):
         Over the last third, without readings that were rejected.
     worse : bool
         Whether the model that learned ended no better than the fixed one on the last third (a gain
-        below 1 % counts as none), or errs 1 % of its range more on the first third without a gain of a tenth on the last.
+        below 1 % counts as none), or errs 1 % of its range more on the first third without a gain
+        of a tenth on the last.
     probation : int
         Samples at the end that the model did not take over, since no later samples confirm them.
     again : Errors

@@ -285,15 +285,13 @@ fn to_text(
     lines.push(format!("the model moved: {}", drift(adapted)));
     // Where they do not refuse the model, they are told all the same.
     lines.extend(faults.iter().filter(|_| !refused).cloned());
-    lines.extend(
-        match adapted.start {
-            Start::Off if model.fitted().is_some() => Some("with all operators off"),
-            Start::On => Some("with all operators on"),
-            Start::Rest => Some("from a rest that was found"),
-            _ => None,
-        }
-        .map(|from| format!("the recording begins {from}: what that explains was not learned")),
-    );
+    let start = adapted.start;
+    if start != Start::Fitted && !(start == Start::Off && model.fitted().is_none()) {
+        let from = start.words();
+        lines.push(format!(
+            "the recording begins {from}: what that explains was not learned"
+        ));
+    }
     if adapted.covered < HALF {
         lines.push(format!(
             "the input covered {:.0} % of the model's range: what the model does beyond is a guess, \

@@ -320,8 +320,8 @@ impl Adaptive {
     /// Move the inverse to where the measured input is.
     ///
     /// The inverse remembers turning points that came from older weights, until larger swings wipe
-    /// them out. A loop may call this where its target turns and the
-    /// model expects what is measured.
+    /// them out. A loop may call this where its target turns and the model expects what is
+    /// measured.
     ///
     /// Examples
     /// --------

@@ -1,8 +1,8 @@
 //! What an estimator made of recordings, compared with the model left alone.
 
 use super::{
-    AdaptOptions, Adapted, Compared, Drift, EstimatorOptions, OutcomeCounts, ShiftFound, Stuck,
-    no_samples,
+    AdaptOptions, Adapted, Begun, Compared, Drift, EstimatorOptions, OutcomeCounts, ShiftFound,
+    Stuck, no_samples,
 };
 use crate::error::Result;
 use crate::model::{FitSummary, Model, Start};
@@ -59,13 +59,10 @@ fn shifted(found: Option<&ShiftFound>, offline: &Model) -> bool {
 
 /// What an estimator made of recordings.
 pub(super) struct Learned {
-    pub(super) offline: Model,
+    /// Where the operators started, and the model left alone.
+    pub(super) begun: Begun,
     pub(super) last: Model,
     pub(super) learned: Vec<Learning<f64>>,
-    /// The outputs of the model left alone.
-    pub(super) fixed: Vec<f64>,
-    /// Where the operators started.
-    pub(super) start: Start,
     /// The outputs of the last model, run again from there.
     pub(super) again: Vec<f64>,
     pub(super) probation: usize,
@@ -73,8 +70,6 @@ pub(super) struct Learned {
     pub(super) still: usize,
     /// The samples over which the output was held.
     pub(super) held: Vec<Range<usize>>,
-    /// As [`Adapted::start`].
-    pub(super) taken: Start,
     /// As [`Adapted::covered`].
     pub(super) covered: f64,
     pub(super) shares: Vec<(&'static str, f64)>,
@@ -94,20 +89,20 @@ impl Learned {
         {
             learning.output = output;
         }
-        self.fixed = model.behind_operators(recordings, &self.fixed);
+        self.begun.output = model.behind_operators(recordings, &self.begun.output);
         self.again = model.behind_operators(recordings, &self.again);
     }
 
     /// Compares it with the model left alone. `joined` are the recordings one after the other.
     pub(super) fn judged(self, joined: &Recording, options: &AdaptOptions) -> Result<Adapted> {
         let Self {
-            offline,
+            begun,
             mut last,
             mut learned,
-            fixed,
             again,
             ..
         } = self;
+        let (offline, fixed) = (begun.model, begun.output);
         let count = joined.len();
         let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
         for learning in &mut learned[count - self.still..] {
@@ -158,7 +153,7 @@ impl Learned {
             joined,
             options,
             self.options.described(),
-            (&again, counts, self.start),
+            (&again, counts, begun.start),
         ));
         let drift = Drift::between(&offline, &last, self.shift.as_ref());
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
@@ -188,7 +183,7 @@ impl Learned {
             again_late,
             again_first,
             late_spread,
-            start: self.taken,
+            start: begun.taken,
             covered: self.covered,
             shares: self.shares,
             shift: self.shift,

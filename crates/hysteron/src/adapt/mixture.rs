@@ -175,7 +175,6 @@ impl Mixture {
         let from = state.position();
         let step = core.step(state, input)?;
         let distance = (state.position() - from).abs();
-        self.look_at_start(state)?;
         let part = if self.frozen {
             LEAST
         } else {
@@ -195,6 +194,7 @@ impl Mixture {
             outputs.push(learning.output);
             outcomes.push(learning.outcome);
         }
+        self.look_at_start()?;
         let output = self.shares.near.mean(outputs.iter().copied());
         let outcome = joint(&outcomes);
         let believed = matches!(
@@ -345,8 +345,8 @@ impl Mixture {
 
     /// Whether it still matters how the operators began. The first expert is the model as it was,
     /// and as long as it matters, as it is.
-    fn look_at_start(&mut self, state: &OperatorState) -> Result<()> {
-        let core = &self.experts[0].core;
+    fn look_at_start(&mut self) -> Result<()> {
+        let Expert { core, state, .. } = &self.experts[0];
         if let Some(unsure) = &mut self.unsure
             && !unsure.step(core, state)?
         {
@@ -357,12 +357,11 @@ impl Mixture {
 
     /// Others moved the state along its branches.
     pub(super) fn follow(&mut self, state: &OperatorState) -> Result<()> {
-        self.look_at_start(state)?;
         for expert in &mut self.experts {
             expert.move_to(state)?;
             expert.learns.follow(&expert.state)?;
         }
-        Ok(())
+        self.look_at_start()
     }
 
     /// Others set the state, and know it.

@@ -1,7 +1,7 @@
 //! Adaptation: lets a model follow a plant that changes.
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
-//! output, then learned from. `learned` compares what came of it with the model left alone, and
+//! output, then learned from. `begun` says where the operators begin, `learned` compares what came of it with the model left alone, and
 //! `adapted` is the result. `learner` is the table of learners and their options, `options` what
 //! these come to for a model. `adaptive` is the model that learns sample by sample: by an estimator
 //! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
@@ -14,6 +14,7 @@
 mod adapted;
 mod adaptive;
 mod basis;
+mod begun;
 mod counts;
 mod drift;
 mod expert;
@@ -47,11 +48,10 @@ pub use unknown_load::ShiftFound;
 pub use window::Window;
 
 use crate::error::{Error, Result};
-use crate::evaluate::OTHER_START;
-use crate::identify::find_rest;
-use crate::model::{Model, Start, Surroundings};
+use crate::model::{Model, Start};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
+use begun::{Begun, run_from};
 use learned::{Learned, covered};
 use std::ops::Range;
 
@@ -126,20 +126,13 @@ fn learn(
     let learned_by = options.resolve(model, joined)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
-    let starts = match options.start {
-        Start::Unknown => vec![Start::Fitted, Start::Off, Start::On, Start::Rest],
-        start => vec![start],
-    };
-    let Begun {
-        model: offline,
-        start,
-        taken,
-        output: fixed,
-    } = begun(&offline, recordings, starts)?;
+    let others = [Start::Off, Start::On, Start::Rest];
+    let begun = Begun::new(&offline, recordings, options.start, &others)?;
+    let offline = &begun.model;
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
-        true => stuck::at_the_end(&offline, recordings, &fixed),
+        true => stuck::at_the_end(offline, recordings, &begun.output),
         false => 0,
     };
     // The last samples, which are not to be learned from.
@@ -147,13 +140,13 @@ fn learn(
     let mut learned = Vec::with_capacity(count);
     let (mut last, mut all_held) = (None, Vec::new());
     for recording in recordings {
-        adaptive.start_from(offline.state_at(start).operators)?;
+        adaptive.start_from(offline.state_at(begun.start).operators)?;
         // Those up to the last samples, and these.
         let sure = (count - unsure).saturating_sub(learned.len());
         let sure = sure.min(recording.len());
         let first = learned.len();
         let held = match learned_by.watches() {
-            true => stuck::held_outputs(recording, &fixed[first..first + recording.len()]),
+            true => stuck::held_outputs(recording, &begun.output[first..first + recording.len()]),
             false => Vec::new(),
         };
         all_held.extend(held.iter().map(|run| run.start + first..run.end + first));
@@ -186,16 +179,13 @@ fn learn(
         last = Some((adaptive.model()?, adaptive.shares()));
     }
     let (last, shares) = last.ok_or_else(no_samples)?;
-    let last = offline.starts(last, start)?;
+    let last = offline.starts(last, begun.start)?;
     Ok(Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
-        start,
-        taken,
-        covered: covered(&offline, &joined.input),
-        offline,
+        covered: covered(offline, &joined.input),
+        begun,
         last,
         learned,
-        fixed,
         probation,
         still,
         held: all_held,
@@ -245,72 +235,4 @@ fn refuse_unusable(model: &Model) -> Result<()> {
 
 fn no_samples() -> Error {
     Error::Fit("no samples".into())
-}
-
-/// Where the operators begin, and the fixed model from there.
-struct Begun {
-    /// The model, which knows that start.
-    model: Model,
-    /// Its start, of that model.
-    start: Start,
-    /// The start that was taken.
-    taken: Start,
-    output: Vec<f64>,
-}
-
-/// The first of `starts`, or the one among the others that leaves the fixed model the least errors,
-/// if these are much less ([`OTHER_START`]).
-fn begun(model: &Model, recordings: &[Recording], starts: Vec<Start>) -> Result<Begun> {
-    let mut found: Vec<(f64, Begun)> = Vec::new();
-    for taken in starts {
-        let (model, start) = match taken {
-            // One rest stands for all recordings, as one start does in a model.
-            Start::Rest => {
-                let (rested, _) = find_rest(model, &recordings[0])?;
-                (model.clone().starting_from(&rested)?, Start::Fitted)
-            }
-            Start::Fitted if model.fitted().is_none() => (model.clone(), Start::Off),
-            start => (model.clone(), start),
-        };
-        let output = run_from(&model, start, recordings)?;
-        let measured = recordings.iter().flat_map(|r| &r.output);
-        let squares: f64 = measured.zip(&output).map(|(y, h)| (y - h).powi(2)).sum();
-        let begun = Begun {
-            model,
-            start,
-            taken,
-            output,
-        };
-        // Squares that cannot be summed are the worst.
-        let error = if squares.is_finite() {
-            squares.sqrt()
-        } else {
-            f64::INFINITY
-        };
-        let least = found
-            .iter()
-            .skip(1)
-            .map(|(error, _)| *error)
-            .fold(f64::INFINITY, f64::min);
-        if found.len() < 2 {
-            found.push((error, begun));
-        } else if error < least {
-            found[1] = (error, begun);
-        }
-    }
-    let other = matches!(found[..], [(first, _), (other, _)] if OTHER_START * other < first);
-    let found = found.into_iter().nth(usize::from(other));
-    found.map(|(_, begun)| begun).ok_or_else(no_samples)
-}
-
-/// The outputs of a model that starts so in each recording.
-fn run_from(model: &Model, start: Start, recordings: &[Recording]) -> Result<Vec<f64>> {
-    let mut all = Vec::new();
-    for recording in recordings {
-        let mut state = model.state_at(start);
-        let (begin, around) = (all.len(), Surroundings::from_recording(model, recording));
-        all.resize(begin + recording.len(), 0.0);
-        model.run_in(&mut state, &recording.input, around, &mut all[begin..])?;
-    }
-    Ok(all)
 }

@@ -1,9 +1,7 @@
 //! The method `load` over a recording: an estimate of the shift, sample by sample.
 
 use super::stuck::at_the_end;
-use super::{
-    AdaptOptions, Adapted, AdaptiveLoad, Begun, Learned, begun, covered, on_probation, run_from,
-};
+use super::{AdaptOptions, Adapted, AdaptiveLoad, Begun, Learned, covered, on_probation, run_from};
 use crate::error::{Error, Result};
 use crate::model::{Model, Start, Surroundings};
 use crate::progress::{Progress, SAMPLES_BETWEEN};
@@ -40,21 +38,14 @@ pub(super) fn adapt(
         Some(load) => model.at_load(load)?,
         None => model.clone(),
     };
-    let starts = match options.start {
-        Start::Unknown => vec![Start::Fitted, Start::Off, Start::On],
-        Start::Rest => {
-            let what = "no rest is found on an axis that shifts: take the start fitted, off, on or \
-                        unknown";
-            return Err(Error::Fit(what.into()));
-        }
-        start => vec![start],
-    };
-    let Begun {
-        model: offline,
-        start,
-        taken,
-        output: fixed,
-    } = begun(&offline, recordings, starts)?;
+    if options.start == Start::Rest {
+        let what = "no rest is found on an axis that shifts: take the start fitted, off, on or \
+                    unknown";
+        return Err(Error::Fit(what.into()));
+    }
+    let others = [Start::Off, Start::On];
+    let begun = Begun::new(&offline, recordings, options.start, &others)?;
+    let (offline, start) = (&begun.model, begun.start);
     let around = |one| Surroundings {
         load: None,
         ..Surroundings::from_recording(model, one)
@@ -65,7 +56,7 @@ pub(super) fn adapt(
     let count = joined.len();
     let probation = on_probation(learned_by, count);
     let still = match learned_by.watches() {
-        true => at_the_end(&offline, recordings, &fixed),
+        true => at_the_end(offline, recordings, &begun.output),
         false => 0,
     };
     let unsure = probation.max(still);
@@ -106,13 +97,10 @@ pub(super) fn adapt(
     };
     Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
-        start,
-        taken,
-        covered: covered(&offline, &seen),
-        offline,
+        covered: covered(offline, &seen),
+        begun,
         last,
         learned,
-        fixed,
         probation,
         still,
         held: Vec::new(),

@@ -33,18 +33,16 @@ impl Unsure {
         }
     }
 
-    /// Goes on to where `state` is, from the usual start. Returns whether it still matters.
+    /// Goes on to where `state` of `core` is, from the usual start. Returns whether it still matters.
     ///
     /// # Errors
     /// As [`crate::Model::step`].
     pub(super) fn step(&mut self, core: &Core, state: &OperatorState) -> Result<bool> {
         core.rebase(&mut self.on)?;
-        let mut here = state.clone();
-        core.rebase(&mut here)?;
         let other = core.step(&mut self.on, state.input())?.output;
         self.turns += usize::from(self.turning.push(self.on.position()).is_some());
         let (low, high) = core.output_range();
-        let difference = (other - core.output(&here)).abs();
+        let difference = (other - core.output(state)).abs();
         Ok(difference > MATTERS * (high - low) && self.turns < TURNS)
     }
 }

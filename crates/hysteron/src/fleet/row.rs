@@ -3,7 +3,7 @@
 use super::shape::Shape;
 use crate::data::{Kind, Schema, Value, read_records};
 use crate::error::{Error, Result};
-use crate::model::{Model, Start};
+use crate::model::Model;
 use hysteron_core::Operator;
 use std::path::Path;
 
@@ -144,13 +144,7 @@ impl FleetRow {
             numbers(model.weights()),
             of_fit(|fit| Value::Integer(fit.weights_not_zero as i64)),
             of_fit(|fit| {
-                let start = match fit.start {
-                    Start::Off => "off",
-                    Start::On => "on",
-                    Start::Rest => "rest",
-                    Start::Fitted => "fitted",
-                    Start::Unknown => "unknown",
-                };
+                let start = fit.start.name();
                 Value::Text(start.to_owned())
             }),
             of_fit(|fit| Value::Integer(fit.outliers.len() as i64)),

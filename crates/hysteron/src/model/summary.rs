@@ -38,6 +38,40 @@ pub enum Start {
     Unknown,
 }
 
+impl Start {
+    /// The word for it, as in files and options.
+    ///
+    /// ```
+    /// assert_eq!(hysteron::Start::Rest.name(), "rest");
+    /// ```
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::On => "on",
+            Self::Fitted => "fitted",
+            Self::Rest => "rest",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// From where.
+    ///
+    /// ```
+    /// assert_eq!(hysteron::Start::Off.words(), "with all operators off");
+    /// ```
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Off => "with all operators off",
+            Self::On => "with all operators on",
+            Self::Fitted => "from the start of its fit",
+            Self::Rest => "from a rest before the first sample",
+            Self::Unknown => "from a start that is found",
+        }
+    }
+}
+
 /// A reading that does not belong to its recording. A fit that is robust gives it no weight.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Outlier {

@@ -4,7 +4,7 @@ use super::grade::USABLE;
 use super::parts::{ErrorPart, PartKind};
 use super::{Basis, Cause, Grade, Verdict};
 use crate::advice::remedy_of_readings;
-use crate::model::{Start, band_name};
+use crate::model::band_name;
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting, counted};
 use std::fmt;
@@ -24,17 +24,6 @@ const FASTER: &str = "record more reversals inside the range (design makes such 
 
 fn is_few(cause: &Cause) -> bool {
     matches!(cause, Cause::FewBranches { .. } | Cause::FewPoints { .. })
-}
-
-/// The word for a start, and what it says.
-fn start_words(start: Start) -> (&'static str, &'static str) {
-    match start {
-        Start::Off => ("off", "with all operators off"),
-        Start::On => ("on", "with all operators on"),
-        Start::Fitted => ("fitted", "from the start of its fit"),
-        Start::Rest => ("rest", "from a rest before the first sample"),
-        Start::Unknown => ("unknown", "from a start that is found"),
-    }
 }
 
 impl Grade {
@@ -164,7 +153,7 @@ impl Verdict {
             ),
             Cause::OtherStart { start, percent, .. } => format!(
                 "the model begins elsewhere than the actuator did: {}, it errs {percent:.2} %",
-                start_words(*start).1
+                start.words()
             ),
             Cause::LagLeft { tau } => format!(
                 "the model was fitted with a lag of {} s of the input's sensor undone, and here it \
@@ -407,7 +396,7 @@ impl Verdict {
             Some(Cause::OtherStart { start, .. }) => Remedy::new(
                 "evaluate it with {}; a stroke over the whole range, there and back, brings \
                      actuator and model together",
-                [Setting::word("start", start_words(*start).0)],
+                [Setting::word("start", start.name())],
             ),
             Some(Cause::LagLeft { .. }) => Remedy::new(
                 "undo it here too, with {} and that time constant",
