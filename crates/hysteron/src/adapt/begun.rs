@@ -1,11 +1,10 @@
 //! Where the operators begin in recordings that are learned from.
 
-use super::no_samples;
 use crate::error::Result;
 use crate::evaluate::OTHER_START;
 use crate::identify::find_rest;
 use crate::model::{Model, Start, Surroundings};
-use crate::recording::Recording;
+use crate::recording::{Recording, no_recordings};
 
 /// Where the operators begin, and the fixed model from there.
 pub(super) struct Begun {
@@ -51,7 +50,7 @@ impl Begun {
         let (model, start) = match taken {
             // One rest stands for all recordings, as one start does in a model.
             Start::Rest => {
-                let first = recordings.first().ok_or_else(no_samples)?;
+                let first = recordings.first().ok_or_else(no_recordings)?;
                 let (rested, _) = find_rest(model, first)?;
                 (model.clone().starting_from(&rested)?, Start::Fitted)
             }

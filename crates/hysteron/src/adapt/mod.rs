@@ -1,8 +1,8 @@
 //! Adaptation: lets a model follow a plant that changes.
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
-//! output, then learned from. `begun` says where the operators begin, `learned` compares what came of it with the model left alone, and
-//! `adapted` is the result. `learner` is the table of learners and their options, `options` what
+//! output, then learned from. `begun` says where the operators begin, `learned` compares what came
+//! of it with the model left alone, and `adapted` is the result. `learner` is the table of learners and their options, `options` what
 //! these come to for a model. `adaptive` is the model that learns sample by sample: by an estimator
 //! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
 //! samples of a `window`, from their `sums`. `mixture` has several of these side by side, each an
