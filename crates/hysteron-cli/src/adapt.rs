@@ -264,11 +264,19 @@ fn to_text(
         false => args.out.display().to_string(),
     };
     let mut lines = vec![format!("{target}: {learning}"), text::table(&rows)];
-    if !adapted.shares.is_empty() {
-        let share = |(name, share): &(_, f64)| format!("{name} {:.0} %", 100.0 * share);
-        let shares: Vec<String> = adapted.shares.iter().map(share).collect();
-        lines.push(format!("the model is a mean of {}", shares.join(", ")));
-    }
+    lines.extend(match &adapted.shares[..] {
+        [] => None,
+        [("session", _)] => Some(
+            "one loop at most, as of another session: the model is the one before with another \
+             offset, gain and shift"
+                .into(),
+        ),
+        shares => {
+            let share = |(name, share): &(_, f64)| format!("{name} {:.0} %", 100.0 * share);
+            let shares: Vec<String> = shares.iter().map(share).collect();
+            Some(format!("the model is a mean of {}", shares.join(", ")))
+        }
+    });
     if let Some(found) = &adapted.shift {
         lines.push(shift(found, model));
     } else {

@@ -2,6 +2,7 @@
 //! `cargo run --release -p hysteron-measure -- PROGRAM [ARGUMENTS]`
 
 mod adaptation;
+mod another_day;
 mod batch_speed;
 mod control;
 mod coverage;

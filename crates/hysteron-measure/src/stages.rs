@@ -3,7 +3,7 @@
 
 use crate::judged::{error, options, read};
 use crate::result::Result;
-use crate::{folder, loads};
+use crate::{another_day, folder, loads};
 use hysteron::{Auto, Columns, Dynamics, Fit, Policy, Spacing, Start, Status, Surroundings};
 use std::path::Path;
 
@@ -14,6 +14,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     spacing(&folder)?;
     valve(&folder)?;
     ring(&folder)?;
+    another_day::print(&folder)?;
     drive(&folder)
 }
 

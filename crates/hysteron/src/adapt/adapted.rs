@@ -68,7 +68,8 @@ pub struct Adapted {
     pub covered: f64,
     /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty
     /// for the other learners. *trend* is the refit, and half as far beyond it as it moved in a
-    /// cycle.
+    /// cycle. *session* alone is the model before with another offset, gain and shift: of one loop
+    /// at most, where that explains far more than its other learners do.
     pub shares: Vec<(&'static str, f64)>,
     /// What [`crate::Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,

@@ -71,23 +71,25 @@ impl DriftBasis {
     }
 
     fn shifted(model: &Model) -> Self {
-        let levels = model.plane().levels();
-        let member = |shift: &isize| {
-            let mut member = vec![0.0; model.weights().len()];
-            for ((i, j), &mu) in operators(levels).zip(model.weights()) {
-                let j = j.saturating_add_signed(*shift);
-                if (1..=levels).contains(&j) {
-                    let i = i.saturating_add_signed(*shift).max(1);
-                    member[operator_index(i, j)] += mu;
-                }
-            }
-            member
-        };
         let coefficient = |shift: &isize| if *shift == 0 { 1.0 } else { 0.0 };
         Self {
             model: model.clone(),
-            basis: SHIFTS.iter().map(member).collect(),
+            basis: SHIFTS.map(|shift| along_diagonal(model, shift)).to_vec(),
             coefficients: SHIFTS.iter().map(coefficient).collect(),
         }
     }
+}
+
+/// The weights moved along the diagonal of the plane by so many levels, as [`DriftBasis`] says.
+pub(super) fn along_diagonal(model: &Model, shift: isize) -> Vec<f64> {
+    let levels = model.plane().levels();
+    let mut moved = vec![0.0; model.weights().len()];
+    for ((i, j), &mu) in operators(levels).zip(model.weights()) {
+        let j = j.saturating_add_signed(shift);
+        if (1..=levels).contains(&j) {
+            let i = i.saturating_add_signed(shift).max(1);
+            moved[operator_index(i, j)] += mu;
+        }
+    }
+    moved
 }

@@ -159,15 +159,17 @@ impl Learned {
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
         // A load goes on moving: its last shift is not that of the samples before.
         let stays = self.shift.is_none();
-        Ok(Adapted {
-            worse: is_worse(late.as_ref(), changed, offline.output_range())
+        let range = offline.output_range();
+        // One of another session was judged by the whole loop.
+        let worse = !matches!(self.shares[..], [("session", _)])
+            && (is_worse(late.as_ref(), changed, range)
                 || late.is_some_and(|late| late.says_nothing(late_spread))
+                || stays && again_late.is_some_and(|again| again.loss(range) > ROUNDING)
                 || stays
-                    && again_late
-                        .is_some_and(|again| again.loss(offline.output_range()) > ROUNDING)
-                || stays
-                    && again_first.is_some_and(|first| first.loss(offline.output_range()) > SPOILT)
-                    && !is_of_use(latest.as_ref(), again_late.as_ref()),
+                    && again_first.is_some_and(|first| first.loss(range) > SPOILT)
+                    && !is_of_use(latest.as_ref(), again_late.as_ref()));
+        Ok(Adapted {
+            worse,
             drift,
             stuck,
             cut_off: inside(&offline, clipped(&joined.input, &joined.output)),

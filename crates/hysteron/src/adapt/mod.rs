@@ -2,13 +2,14 @@
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
 //! output, then learned from. `begun` says where the operators begin, `learned` compares what came
-//! of it with the model left alone, and `adapted` is the result. `learner` is the table of learners and their options, `options` what
-//! these come to for a model. `adaptive` is the model that learns sample by sample: by an estimator
-//! of the core, all weights or a `basis` with few coefficients for drift; or by a `refit` to the
-//! samples of a `window`, from their `sums`. `mixture` has several of these side by side, each an
-//! `expert` with one of the `shares`, counts in `strokes` how far the input went, and waits while it
-//! is `unsure` how the operators began; `learns` is the choice among all of these. `load` and
-//! `unknown_load` do the same for the shift of an unknown load. `counts` counts what was done with
+//! of it with the model left alone, and `adapted` is the result. `learner` is the table of learners
+//! and their options, `options` what these come to for a model. `adaptive` is the model that learns
+//! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
+//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `mixture` has several of
+//! these side by side, each an `expert` with one of the `shares`, counts in `strokes` how far the
+//! input went, and waits while it is `unsure` how the operators began; `learns` is the choice among
+//! all of these. `session` finds what another session changes, from one loop. `load` and
+//! `unknown_load` follow the shift of an unknown load. `counts` counts what was done with
 //! the samples, `stuck` finds where a channel stood still, and `drift` tells how far the model moved.
 
 mod adapted;
@@ -25,6 +26,7 @@ mod load;
 mod mixture;
 mod options;
 mod refit;
+mod session;
 mod shares;
 mod strokes;
 mod stuck;
@@ -53,6 +55,7 @@ use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
 use begun::{Begun, run_from};
 use learned::{Learned, covered};
+use session::session;
 use std::ops::Range;
 
 /// Runs an estimator over a recording. For each sample it returns the expected output before it
@@ -180,7 +183,7 @@ fn learn(
     }
     let (last, shares) = last.ok_or_else(no_samples)?;
     let last = offline.starts(last, begun.start)?;
-    Ok(Learned {
+    let mut learned = Learned {
         again: run_from(&last, Start::Fitted, recordings)?,
         covered: covered(offline, &joined.input),
         begun,
@@ -192,7 +195,11 @@ fn learn(
         shares,
         shift: None,
         options: learned_by,
-    })
+    };
+    if options.learner == Learner::Auto && adaptive.stuck().is_none() {
+        session(&mut learned, recordings, &joined.output)?;
+    }
+    Ok(learned)
 }
 
 /// The samples of a part one stretch after the other, and whether each is among the held ones.

@@ -10,6 +10,7 @@ mod filtered_feedback;
 mod adaptation;
 mod adaptive_stages;
 mod advised;
+mod another_session;
 mod arrow_copy;
 mod batch;
 mod believed;
