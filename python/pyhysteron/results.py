@@ -1480,6 +1480,9 @@ class AdaptedComparison(_Result):
         Where the operators began: of an unknown start, the one that was taken.
     covered : float
         The share of the plane's input range that the recordings cover, from 0 to 1.
+    session : bool
+        Whether the model is the one before with another offset, gain and shift, as of another
+        session: from one loop at most, where that errs far less.
     """
 
     whole: Compared
@@ -1497,6 +1500,7 @@ class AdaptedComparison(_Result):
     cut_off: CutOff | None
     start: str
     covered: float
+    session: bool
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -174,6 +174,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "again_first": adapted.again_first,
         "late_spread": adapted.late_spread,
         "counts": adapted.counts,
+        "session": adapted.session,
         "shares": adapted.shares.iter().copied().collect::<std::collections::BTreeMap<_, _>>(),
         "drift": adapted.drift,
         "shift": adapted.shift.as_ref().map(|found| json!({
@@ -264,19 +265,21 @@ fn to_text(
         false => args.out.display().to_string(),
     };
     let mut lines = vec![format!("{target}: {learning}"), text::table(&rows)];
-    lines.extend(match &adapted.shares[..] {
-        [] => None,
-        [("session", _)] => Some(
-            "one loop at most, as of another session: the model is the one before with another \
-             offset, gain and shift"
-                .into(),
-        ),
-        shares => {
-            let share = |(name, share): &(_, f64)| format!("{name} {:.0} %", 100.0 * share);
-            let shares: Vec<String> = shares.iter().map(share).collect();
-            Some(format!("the model is a mean of {}", shares.join(", ")))
-        }
-    });
+    if !adapted.shares.is_empty() {
+        let share = |(name, share): &(_, f64)| format!("{name} {:.0} %", 100.0 * share);
+        let shares: Vec<String> = adapted.shares.iter().map(share).collect();
+        lines.push(format!("the model is a mean of {}", shares.join(", ")));
+    }
+    if adapted.session {
+        let numbers = match adapted.drift.shift == 0.0 {
+            true => "offset and gain",
+            false => "offset, gain and shift",
+        };
+        lines.push(format!(
+            "the input made one loop at most: the model is no mean of learners, but the one before \
+             with another {numbers}, as of another session"
+        ));
+    }
     if let Some(found) = &adapted.shift {
         lines.push(shift(found, model));
     } else {

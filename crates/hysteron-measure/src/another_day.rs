@@ -37,7 +37,13 @@ pub(crate) fn print(folder: &Path) -> Result<()> {
             continue;
         }
         let stroke = longest(recording);
-        let adapted = adapt(model, &stroke, &AdaptOptions::default(), Progress::NONE)?.model;
+        let adapted = adapt(model, &stroke, &AdaptOptions::default(), Progress::NONE)?;
+        // One that ended worse is not written.
+        let adapted = if adapted.worse {
+            model.clone()
+        } else {
+            adapted.model
+        };
         let (constant, line) = moved(model, &stroke)?;
         let each = [model, &constant, &line, &adapted, itself];
         let mut errors = [0.0; 5];

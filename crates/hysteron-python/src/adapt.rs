@@ -159,6 +159,7 @@ pub(crate) fn adapt<'py>(
     comparison.set_item("cut_off", to_python(py, &adapted.cut_off)?)?;
     comparison.set_item("start", to_python(py, &adapted.start)?)?;
     comparison.set_item("covered", adapted.covered)?;
+    comparison.set_item("session", adapted.session)?;
     table.set_item("output_model", PyArray1::from_vec(py, adapted.output_model))?;
     if let Some(found) = adapted.shift {
         table.set_item("shift_model", PyArray1::from_vec(py, found.shifts))?;

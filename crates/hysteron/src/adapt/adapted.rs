@@ -41,7 +41,8 @@ pub struct Adapted {
     /// or less than 1 % smaller although it changed. Differences of the size of rounding do not
     /// count. Or the final weights have larger errors there ([`Adapted::again_late`]). Or they err
     /// more on the first third, by 1 % of the range ([`Adapted::again_first`]), and either learning or
-    /// they gained less than a tenth on the last.
+    /// they gained less than a tenth on the last. Of a model of another [session](Adapted::session)
+    /// only whether it errs more on the first or the last third.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.
@@ -68,9 +69,12 @@ pub struct Adapted {
     pub covered: f64,
     /// The learners that [`crate::Learner::Auto`] mixes, each with its share of the model; empty
     /// for the other learners. *trend* is the refit, and half as far beyond it as it moved in a
-    /// cycle. *session* alone is the model before with another offset, gain and shift: of one loop
-    /// at most, where that explains far more than its other learners do.
+    /// cycle.
     pub shares: Vec<(&'static str, f64)>,
+    /// Whether the model is the one before with another offset, gain and shift, as of another
+    /// session, and no mean of learners: from recordings of one loop at most, where that errs less
+    /// than what [`crate::Learner::Auto`] learned, and at most half as much as the model left alone.
+    pub session: bool,
     /// What [`crate::Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
     /// The options of what learned.

@@ -1,5 +1,6 @@
 //! What an estimator made of recordings, compared with the model left alone.
 
+use super::session::SELDOM;
 use super::{
     AdaptOptions, Adapted, Begun, Compared, Drift, EstimatorOptions, OutcomeCounts, ShiftFound,
     Stuck, no_samples,
@@ -22,9 +23,6 @@ const SPOILT: f64 = 0.01;
 
 /// A model that gains less than this share of the error is not worth a change.
 const WORTH: f64 = 0.01;
-
-/// One rejected reading in so many is a spike.
-const SELDOM: usize = 20;
 
 /// Learning that leaves more than this share of the error gains little.
 const GAINS: f64 = 0.9;
@@ -73,6 +71,8 @@ pub(super) struct Learned {
     /// As [`Adapted::covered`].
     pub(super) covered: f64,
     pub(super) shares: Vec<(&'static str, f64)>,
+    /// As [`Adapted::session`].
+    pub(super) session: bool,
     pub(super) shift: Option<ShiftFound>,
     pub(super) options: EstimatorOptions,
 }
@@ -153,21 +153,27 @@ impl Learned {
             joined,
             options,
             self.options.described(),
-            (&again, counts, begun.start),
+            (&again, counts, begun.start, self.session),
         ));
         let drift = Drift::between(&offline, &last, self.shift.as_ref());
         let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
         // A load goes on moving: its last shift is not that of the samples before.
         let stays = self.shift.is_none();
         let range = offline.output_range();
-        // One of another session was judged by the whole loop.
-        let worse = !matches!(self.shares[..], [("session", _)])
-            && (is_worse(late.as_ref(), changed, range)
-                || late.is_some_and(|late| late.says_nothing(late_spread))
-                || stays && again_late.is_some_and(|again| again.loss(range) > ROUNDING)
-                || stays
-                    && again_first.is_some_and(|first| first.loss(range) > SPOILT)
-                    && !is_of_use(latest.as_ref(), again_late.as_ref()));
+        let ends_worse = again_late.is_some_and(|again| again.loss(range) > ROUNDING);
+        // A model of another session has not been learned: it was judged by the whole loop.
+        let worse = match self.session {
+            // Where it lost at the beginning, it may be a sensor that ends.
+            true => ends_worse || again_first.is_some_and(|first| first.loss(range) > ROUNDING),
+            false => {
+                is_worse(late.as_ref(), changed, range)
+                    || late.is_some_and(|late| late.says_nothing(late_spread))
+                    || stays && ends_worse
+                    || stays
+                        && again_first.is_some_and(|first| first.loss(range) > SPOILT)
+                        && !is_of_use(latest.as_ref(), again_late.as_ref())
+            }
+        };
         Ok(Adapted {
             worse,
             drift,
@@ -188,6 +194,7 @@ impl Learned {
             start: begun.taken,
             covered: self.covered,
             shares: self.shares,
+            session: self.session,
             shift: self.shift,
             options: self.options,
         })
@@ -201,7 +208,7 @@ fn summary(
     recording: &Recording,
     options: &AdaptOptions,
     described: serde_json::Value,
-    (again, counts, start): (&Errors, OutcomeCounts, Start),
+    (again, counts, start, session): (&Errors, OutcomeCounts, Start, bool),
 ) -> FitSummary {
     let before = offline.fit.clone().unwrap_or_default();
     let source = recording.source.as_ref();
@@ -212,6 +219,7 @@ fn summary(
             "method": options.learner,
             "options": described,
             "counts": counts,
+            "session": session,
             "from": offline.fit.as_ref().map(|fit| json!({
                 "file": fit.file, "sha256": fit.sha256, "samples": fit.samples, "rmse": fit.rmse,
             })),

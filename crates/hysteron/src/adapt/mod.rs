@@ -54,6 +54,7 @@ use crate::model::{Model, Start};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
 use begun::{Begun, run_from};
+use hysteron_core::Outcome;
 use learned::{Learned, covered};
 use session::session;
 use std::ops::Range;
@@ -111,7 +112,7 @@ pub fn adapt(
     let mut learned = learn(&model.within(), (&seen, &seen_joined), options, progress)?;
     learned.pass(model, recordings);
     let mut adapted = learned.judged(&joined, options)?;
-    let mut whole = model.around(adapted.model.operators().clone());
+    let mut whole = model.around_within(adapted.model.operators().clone())?;
     whole.fit = adapted.model.fit.take();
     adapted.model = adapted.model.starts(whole, Start::Fitted)?;
     Ok(adapted)
@@ -183,23 +184,32 @@ fn learn(
     }
     let (last, shares) = last.ok_or_else(no_samples)?;
     let last = offline.starts(last, begun.start)?;
-    let mut learned = Learned {
-        again: run_from(&last, Start::Fitted, recordings)?,
+    let again = run_from(&last, Start::Fitted, recordings)?;
+    let outcomes = learned.iter().map(|learning| learning.outcome);
+    let outcomes: Vec<Outcome> = outcomes.take(count - unsure).collect();
+    let stood = outcomes.iter().any(|outcome| outcome.is_stuck());
+    let other = match options.learner {
+        Learner::Auto if !stood && still == 0 && all_held.is_empty() => {
+            session(&begun, (&again, &outcomes), (recordings, joined))?
+        }
+        _ => None,
+    };
+    let session = other.is_some();
+    let (last, again) = other.unwrap_or((last, again));
+    Ok(Learned {
         covered: covered(offline, &joined.input),
+        shares: if session { Vec::new() } else { shares },
         begun,
         last,
+        again,
         learned,
         probation,
         still,
         held: all_held,
-        shares,
+        session,
         shift: None,
         options: learned_by,
-    };
-    if options.learner == Learner::Auto && adaptive.stuck().is_none() {
-        session(&mut learned, recordings, &joined.output)?;
-    }
-    Ok(learned)
+    })
 }
 
 /// The samples of a part one stretch after the other, and whether each is among the held ones.

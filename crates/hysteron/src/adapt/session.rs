@@ -6,12 +6,11 @@
 
 use super::basis::along_diagonal;
 use super::begun::{Begun, run_from};
-use super::learned::Learned;
 use super::window::TURN;
 use crate::error::Result;
-use crate::model::{Model, Operators, Start};
+use crate::model::{Model, Operators, Plane, Start};
 use crate::recording::Recording;
-use crate::series::{branch_spans, mean_and_deviation, range};
+use crate::series::{branch_spans, range};
 use hysteron_core::Outcome;
 
 /// A loop is so many ranges of the input long, there and back; the rest is how it was entered and
@@ -23,101 +22,121 @@ const LOOP: f64 = 2.5;
 const GAIN: f64 = 0.2;
 const SHIFT: f64 = 0.02;
 
-/// Shifts up to this share of the plane are tried, so many to a level.
+/// Shifts up to this share of the plane are tried, by a quarter of a level or so that there are at
+/// most so many in each direction: each costs a run.
 const MOST: f64 = 0.15;
-const STEPS: f64 = 4.0;
+const STEP: f64 = 0.25;
+const SHIFTS: f64 = 30.0;
 
-/// The readings of one loop are worth so many independent ones, however many they are: a model's
-/// error is the same for neighbours.
+/// The readings of one loop are worth so many independent ones at most: a model's error is the same
+/// for neighbours. Fewer than [`LEAST`] say too little of three numbers.
 const READINGS: f64 = 60.0;
+const LEAST: usize = 20;
+
+/// One rejected reading in so many is a spike.
+pub(super) const SELDOM: usize = 20;
 
 /// A recording of less than this share of the model's range says too little of the rest.
-const COVERED: f64 = 0.5;
+const COVERED: f64 = 0.8;
 
 /// A shift moves both branches. From one alone it cannot be told from other hysteresis: the input
 /// has to go through so large a share of its range in both directions.
 const BOTH: f64 = 0.5;
 
 /// Another session is believed where it leaves at most this share of the errors of the model left
-/// alone, and of a constant. Shape alone, which no other offset mends, leaves more.
+/// alone, and of a constant; and less than a line in the input, which fits one stroke of anything.
+/// Shape alone, which no other offset mends, leaves more.
 const CLEAR: f64 = 0.5;
 
-/// A model of another session.
-struct Session {
-    model: Model,
-    /// Its squared error over the samples that are sure.
-    squares: f64,
-}
-
-/// Takes the model of another session, if the recordings are of one loop at most, and if it errs
-/// less than what all learners together made, and far less than the model left alone and than a
-/// constant. `measured` are the outputs of the recordings one after the other.
+/// The model of another session and its outputs, if the recordings are of one loop at most, and if it
+/// errs less than `kept`, the outputs of what all learners together made, and far less than the model
+/// left alone. `outcomes` are those of the samples that may be learned from, `joined` the recordings
+/// one after the other.
 ///
 /// # Errors
 /// As [`Model::run_in`].
 pub(super) fn session(
-    learned: &mut Learned,
-    recordings: &[Recording],
-    measured: &[f64],
-) -> Result<()> {
-    let plane = *learned.begun.model.plane();
-    let inputs = || recordings.iter().map(|recording| &recording.input[..]);
-    let seen = inputs().map(range).fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(low, high), (least, most)| (low.min(least), high.max(most)),
-    );
-    let width = seen.1 - seen.0;
-    let [up, down] = ways(recordings, TURN * (plane.max() - plane.min()));
-    if up + down > LOOP * width || learned.covered < COVERED {
-        return Ok(());
-    }
-    let count = measured.len() - learned.probation.max(learned.still);
-    let sure = |n: &usize| {
-        learned.learned[*n].outcome != Outcome::Rejected
-            && !learned.held.iter().any(|held| held.contains(n))
+    begun: &Begun,
+    (kept, outcomes): (&[f64], &[Outcome]),
+    (recordings, joined): (&[Recording], &Recording),
+) -> Result<Option<(Model, Vec<f64>)>> {
+    let measured = &joined.output[..];
+    let Some((sure, most)) = one_loop(begun.model.plane(), outcomes, recordings) else {
+        return Ok(None);
     };
-    let sure: Vec<usize> = (0..count).filter(sure).collect();
     let squares = |outputs: &dyn Fn(usize) -> f64| -> f64 {
-        sure.iter()
-            .map(|n| (measured[*n] - outputs(*n)).powi(2))
-            .sum()
+        let squares = sure.iter().map(|n| (measured[*n] - outputs(*n)).powi(2));
+        squares.sum()
     };
-    let sure_outputs: Vec<f64> = sure.iter().map(|n| measured[*n]).collect();
-    let (mean, _) = mean_and_deviation(&sure_outputs);
-    let (alone, constant) = (squares(&|n| learned.begun.output[n]), squares(&|_| mean));
-    let enough = (CLEAR.powi(2) * alone.min(constant)).min(squares(&|n| learned.again[n]));
-    let most = match up.min(down) < BOTH * width {
-        true => 0,
-        false => (MOST * STEPS * plane.levels() as f64) as i32,
-    };
-    let mut best: Option<(f64, Session)> = None;
-    for step in -most..=most {
-        let levels = f64::from(step) / STEPS;
-        let Some(found) = shifted(&learned.begun, recordings, (measured, &sure), levels)? else {
-            continue;
-        };
-        let share = levels / plane.levels() as f64;
-        // Twice the negative logarithm of the posterior, with noise of unknown size.
-        let doubt = READINGS * found.squares.max(f64::MIN_POSITIVE).ln() + (share / SHIFT).powi(2);
-        if best.as_ref().is_none_or(|(least, _)| doubt < *least) {
-            best = Some((doubt, found));
+    let line = regression(sure.iter().map(|n| (joined.input[*n], measured[*n])));
+    let [alone, kept, constant, line] = [
+        squares(&|n| begun.output[n]),
+        squares(&|n| kept[n]),
+        squares(&|_| line.means.1),
+        squares(&|n| line.at(joined.input[n], line.slope())),
+    ];
+    let enough = (CLEAR.powi(2) * alone.min(constant)).min(kept).min(line);
+    let levels = begun.model.plane().levels() as f64;
+    let step = STEP.max(most * levels / SHIFTS);
+    let steps = (most * levels / step) as i32;
+    let mut best: Option<(f64, Model)> = None;
+    for step in (-steps..=steps).map(|n| f64::from(n) * step) {
+        let found = shifted(begun, recordings, (measured, &sure), step)?;
+        if let Some((doubt, model)) = found
+            && best.as_ref().is_none_or(|(least, _)| doubt < *least)
+        {
+            best = Some((doubt, model));
         }
     }
-    let Some((_, found)) = best.filter(|(_, session)| session.squares < enough) else {
-        return Ok(());
+    let Some((_, model)) = best else {
+        return Ok(None);
     };
-    learned.again = run_from(&found.model, Start::Fitted, recordings)?;
-    learned.last = found.model;
-    learned.shares = vec![("session", 1.0)];
-    Ok(())
+    let outputs = run_from(&model, Start::Fitted, recordings)?;
+    let better = squares(&|n| outputs[n]) < enough;
+    Ok(better.then_some((model, outputs)))
+}
+
+/// Of recordings of one loop at most: the samples that are sure, and the largest shift to try, as a
+/// share of the plane. `None` for others, and where readings were rejected more than seldom.
+fn one_loop(
+    plane: &Plane,
+    outcomes: &[Outcome],
+    recordings: &[Recording],
+) -> Option<(Vec<usize>, f64)> {
+    let count = outcomes.len();
+    let sure = |n: &usize| outcomes[*n] != Outcome::Rejected;
+    let sure: Vec<usize> = (0..count).filter(sure).collect();
+    if sure.len() < LEAST || (count - sure.len()) * SELDOM > count {
+        return None;
+    }
+    // Beyond the plane the operators see its end.
+    let inside = |x: &f64| x.clamp(plane.min(), plane.max());
+    let inputs = recordings.iter().map(|recording| {
+        let inside = recording.input.iter().map(inside);
+        inside.collect::<Vec<f64>>()
+    });
+    let inputs: Vec<Vec<f64>> = inputs.collect();
+    let (low, high) = range(&inputs.concat());
+    let [up, down] = ways(&inputs, TURN * (plane.max() - plane.min()));
+    let width = high - low;
+    if up + down > LOOP * width || width < COVERED * (plane.max() - plane.min()) {
+        return None;
+    }
+    let most = if up.min(down) < BOTH * width {
+        0.0
+    } else {
+        MOST
+    };
+    Some((sure, most))
 }
 
 /// How far the input goes up, and down, from turn to turn.
-fn ways(recordings: &[Recording], tolerance: f64) -> [f64; 2] {
+fn ways(inputs: &[Vec<f64>], tolerance: f64) -> [f64; 2] {
     let (mut up, mut down) = (0.0, 0.0);
-    for Recording { input, .. } in recordings {
+    for input in inputs {
         for stroke in branch_spans(input, tolerance) {
-            let way = input[stroke.end - 1] - input[stroke.start];
+            // A stroke begins at the turn, the last sample of the one before.
+            let way = input[stroke.end - 1] - input[stroke.start.saturating_sub(1)];
             up += way.max(0.0);
             down -= way.min(0.0);
         }
@@ -125,14 +144,15 @@ fn ways(recordings: &[Recording], tolerance: f64) -> [f64; 2] {
     [up, down]
 }
 
-/// The model moved by so many levels, with the offset and gain that suit the sure samples best.
-/// `None` where its output stands still there, or where numbers overflow.
+/// The model moved by so many levels, with the offset and gain that suit the sure samples best, and
+/// twice the negative logarithm of its posterior, for noise of unknown size. `None` where its output
+/// stands still there, or where numbers overflow.
 fn shifted(
     begun: &Begun,
     recordings: &[Recording],
     (measured, sure): (&[f64], &[usize]),
     levels: f64,
-) -> Result<Option<Session>> {
+) -> Result<Option<(f64, Model)>> {
     let model = &begun.model;
     let weights = along_diagonal_by(model, levels);
     let with = |gain: f64, offset: f64| -> Result<Model> {
@@ -142,28 +162,27 @@ fn shifted(
         model.starts(model.around(operators), begun.start)
     };
     let outputs = run_from(&with(1.0, model.offset())?, Start::Fitted, recordings)?;
-    let pair = |n: &usize| (outputs[*n] - model.offset(), measured[*n]);
-    let pairs: Vec<(f64, f64)> = sure.iter().map(pair).collect();
-    let count = pairs.len() as f64;
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
-    let (h_mean, y_mean) = (mean(&|pair| pair.0), mean(&|pair| pair.1));
-    let spread = mean(&|(h, _)| (h - h_mean).powi(2));
-    let common = mean(&|(h, y)| (h - h_mean) * (y - y_mean));
-    let error = |gain: f64| mean(&|(h, y)| (y - y_mean - gain * (h - h_mean)).powi(2));
-    let free = common / spread;
+    let pairs = sure
+        .iter()
+        .map(|n| (outputs[*n] - model.offset(), measured[*n]));
+    let line = regression(pairs.clone());
+    let error = |gain: f64| -> f64 {
+        let squares = pairs.clone().map(|(h, y)| (y - line.at(h, gain)).powi(2));
+        squares.sum::<f64>() / line.count
+    };
+    let readings = READINGS.min(line.count);
     // The prior of the gain weighs as much as so many readings with the error that is left.
-    let prior = error(free) / (READINGS * GAIN.powi(2));
-    let gain = (common + prior) / (spread + prior);
-    if !(spread > 0.0 && gain.is_finite() && gain > 0.0) {
+    let prior = error(line.slope()) / (readings * GAIN.powi(2));
+    let gain = (line.common + prior) / (line.spread + prior);
+    if !(line.spread > 0.0 && gain.is_finite() && gain > 0.0) {
         return Ok(None);
     }
-    let Ok(model) = with(gain, y_mean - gain * h_mean) else {
-        return Ok(None);
-    };
-    Ok(Some(Session {
-        model,
-        squares: count * error(gain),
-    }))
+    let share = levels / model.plane().levels() as f64;
+    let doubt = readings * error(gain).max(f64::MIN_POSITIVE).ln()
+        + (share / SHIFT).powi(2)
+        + ((gain - 1.0) / GAIN).powi(2);
+    let found = with(gain, line.at(0.0, gain)).ok();
+    Ok(found.map(|model| (doubt, model)))
 }
 
 /// The weights moved along the diagonal by a number of levels: a mean of those moved by the whole
@@ -178,4 +197,38 @@ fn along_diagonal_by(model: &Model, levels: f64) -> Vec<f64> {
         }
     }
     moved
+}
+
+/// Means, variance and covariance of pairs.
+struct Regression {
+    count: f64,
+    means: (f64, f64),
+    spread: f64,
+    common: f64,
+}
+
+fn regression(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Regression {
+    let count = pairs.clone().count() as f64;
+    let mean = |sum: f64| sum / count;
+    let x = mean(pairs.clone().map(|pair| pair.0).sum());
+    let y = mean(pairs.clone().map(|pair| pair.1).sum());
+    let spread = mean(pairs.clone().map(|pair| (pair.0 - x).powi(2)).sum());
+    let common = mean(pairs.map(|pair| (pair.0 - x) * (pair.1 - y)).sum());
+    Regression {
+        count,
+        means: (x, y),
+        spread,
+        common,
+    }
+}
+
+impl Regression {
+    fn slope(&self) -> f64 {
+        self.common / self.spread
+    }
+
+    /// The line through the means with this slope.
+    fn at(&self, x: f64, slope: f64) -> f64 {
+        self.means.1 + slope * (x - self.means.0)
+    }
 }

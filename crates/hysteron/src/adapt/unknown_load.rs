@@ -104,6 +104,7 @@ pub(super) fn adapt(
         probation,
         still,
         held: Vec::new(),
+        session: false,
         shares: Vec::new(),
         shift: Some(found),
         options: learned_by,

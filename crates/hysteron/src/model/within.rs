@@ -126,6 +126,29 @@ impl Model {
         model
     }
 
+    /// The same stages around operators as [`Model::within`] has them: an offset that moved there is
+    /// in front of the stages behind the operators.
+    ///
+    /// # Errors
+    /// As [`Model::with_behind`].
+    pub(crate) fn around_within(&self, operators: Operators) -> Result<Self> {
+        let (factor, own) = (self.sign().factor(), self.offset());
+        let moved = factor * (operators.offset() - own);
+        let behind = self.stages().behind;
+        let knots: Vec<f64> = behind.curve.sums.iter().map(|knot| knot - moved).collect();
+        let offset = match knots.is_empty() {
+            true => own + factor * behind.settled(moved),
+            false => own,
+        };
+        let (operator, plane, sign) = (operators.operator(), *operators.plane(), operators.sign());
+        let weights = operators.weights().to_vec();
+        let model = self.around(Operators::new(operator, plane, weights, offset, sign)?);
+        match knots.is_empty() {
+            true => Ok(model),
+            false => model.with_behind([("curve_sums", knots)]),
+        }
+    }
+
     /// The same stages around operators that no fit found.
     #[must_use]
     pub(crate) fn changed(&self, operators: Operators) -> Self {
