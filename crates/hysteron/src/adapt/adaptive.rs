@@ -454,16 +454,11 @@ impl Adaptive {
     /// As [`Model::new`].
     pub fn model(&self) -> Result<Model> {
         let (operator, plane) = (self.offline.operator(), *self.offline.plane());
-        let offset = match self.offline.is_plain() {
-            true => self.offset(),
-            false => self.stages().offset,
-        };
+        let offset = self.sign().factor() * self.level();
         let operators = Operators::new(operator, plane, self.weights(), offset, self.sign())?;
-        let model = self.offline.changed(operators);
-        match self.knots.is_empty() {
-            true => Ok(model),
-            false => model.with_behind([("curve_sums", self.knots.clone())]),
-        }
+        let mut model = self.offline.around_within(operators)?;
+        model.fit = None;
+        model.with_start(None)
     }
 
     /// The model before adaptation.

@@ -10,7 +10,7 @@ use super::window::TURN;
 use crate::error::Result;
 use crate::model::{Model, Operators, Plane, Start};
 use crate::recording::Recording;
-use crate::series::{branch_spans, range};
+use crate::series::{Line, branch_spans, range};
 use hysteron_core::Outcome;
 
 /// A loop is so many ranges of the input long, there and back; the rest is how it was entered and
@@ -68,12 +68,12 @@ pub(super) fn session(
         let squares = sure.iter().map(|n| (measured[*n] - outputs(*n)).powi(2));
         squares.sum()
     };
-    let line = regression(sure.iter().map(|n| (joined.input[*n], measured[*n])));
+    let line = Line::through(sure.iter().map(|n| (joined.input[*n], measured[*n])));
     let [alone, kept, constant, line] = [
         squares(&|n| begun.output[n]),
         squares(&|n| kept[n]),
-        squares(&|_| line.means.1),
-        squares(&|n| line.at(joined.input[n], line.slope())),
+        squares(&|_| line.centre.1),
+        squares(&|n| line.at(joined.input[n])),
     ];
     let enough = (CLEAR.powi(2) * alone.min(constant)).min(kept).min(line);
     let levels = begun.model.plane().levels() as f64;
@@ -165,23 +165,23 @@ fn shifted(
     let pairs = sure
         .iter()
         .map(|n| (outputs[*n] - model.offset(), measured[*n]));
-    let line = regression(pairs.clone());
-    let error = |gain: f64| -> f64 {
-        let squares = pairs.clone().map(|(h, y)| (y - line.at(h, gain)).powi(2));
-        squares.sum::<f64>() / line.count
+    let line = Line::through(pairs.clone());
+    let squares = |gain: f64| -> f64 {
+        let errors = pairs.clone().map(|(h, y)| y - line.inclined(gain, h));
+        errors.map(|error| error.powi(2)).sum()
     };
-    let readings = READINGS.min(line.count);
+    let readings = READINGS.min(sure.len() as f64);
     // The prior of the gain weighs as much as so many readings with the error that is left.
-    let prior = error(line.slope()) / (readings * GAIN.powi(2));
+    let prior = squares(line.slope()) / (readings * GAIN.powi(2));
     let gain = (line.common + prior) / (line.spread + prior);
     if !(line.spread > 0.0 && gain.is_finite() && gain > 0.0) {
         return Ok(None);
     }
     let share = levels / model.plane().levels() as f64;
-    let doubt = readings * error(gain).max(f64::MIN_POSITIVE).ln()
+    let doubt = readings * squares(gain).max(f64::MIN_POSITIVE).ln()
         + (share / SHIFT).powi(2)
         + ((gain - 1.0) / GAIN).powi(2);
-    let found = with(gain, line.at(0.0, gain)).ok();
+    let found = with(gain, line.inclined(gain, 0.0)).ok();
     Ok(found.map(|model| (doubt, model)))
 }
 
@@ -197,38 +197,4 @@ fn along_diagonal_by(model: &Model, levels: f64) -> Vec<f64> {
         }
     }
     moved
-}
-
-/// Means, variance and covariance of pairs.
-struct Regression {
-    count: f64,
-    means: (f64, f64),
-    spread: f64,
-    common: f64,
-}
-
-fn regression(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Regression {
-    let count = pairs.clone().count() as f64;
-    let mean = |sum: f64| sum / count;
-    let x = mean(pairs.clone().map(|pair| pair.0).sum());
-    let y = mean(pairs.clone().map(|pair| pair.1).sum());
-    let spread = mean(pairs.clone().map(|pair| (pair.0 - x).powi(2)).sum());
-    let common = mean(pairs.map(|pair| (pair.0 - x) * (pair.1 - y)).sum());
-    Regression {
-        count,
-        means: (x, y),
-        spread,
-        common,
-    }
-}
-
-impl Regression {
-    fn slope(&self) -> f64 {
-        self.common / self.spread
-    }
-
-    /// The line through the means with this slope.
-    fn at(&self, x: f64, slope: f64) -> f64 {
-        self.means.1 + slope * (x - self.means.0)
-    }
 }

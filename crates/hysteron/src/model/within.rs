@@ -132,6 +132,9 @@ impl Model {
     /// # Errors
     /// As [`Model::with_behind`].
     pub(crate) fn around_within(&self, operators: Operators) -> Result<Self> {
+        if self.is_plain() {
+            return Ok(self.around(operators));
+        }
         let (factor, own) = (self.sign().factor(), self.offset());
         let moved = factor * (operators.offset() - own);
         let behind = self.stages().behind;
@@ -146,16 +149,6 @@ impl Model {
         match knots.is_empty() {
             true => Ok(model),
             false => model.with_behind([("curve_sums", knots)]),
-        }
-    }
-
-    /// The same stages around operators that no fit found.
-    #[must_use]
-    pub(crate) fn changed(&self, operators: Operators) -> Self {
-        Self {
-            start: None,
-            fit: None,
-            ..self.around(operators)
         }
     }
 

@@ -9,7 +9,6 @@
 mod branch_polynomial;
 mod curve;
 mod interpolation;
-mod line;
 mod loads;
 mod mean_curve;
 mod path;

@@ -1,8 +1,9 @@
 //! The kinds of predictors, each at one load.
 
 use super::path::{self, Measured};
-use super::{branch_polynomial, interpolation, line, mean_curve, persistence};
+use super::{branch_polynomial, interpolation, mean_curve, persistence};
 use crate::error::Result;
+use crate::series::Line;
 
 /// The kinds of [`Rival`](crate::Rival).
 ///
@@ -57,7 +58,7 @@ impl RivalKind {
 /// A predictor at one load.
 #[derive(Debug, Clone)]
 pub(crate) enum Predictor {
-    Line(line::Line),
+    Line(Line),
     MeanCurve(mean_curve::MeanCurve),
     BranchPolynomial(branch_polynomial::BranchPolynomial),
     Interpolation(interpolation::Interpolation),
@@ -68,7 +69,10 @@ impl Predictor {
     /// Fits to recordings that are valid. There is one at least.
     pub(crate) fn fit(kind: RivalKind, recordings: &[Measured<'_>]) -> Result<Self> {
         Ok(match kind {
-            RivalKind::Line => Self::Line(line::Line::fit(recordings)),
+            RivalKind::Line => Self::Line(Line::through(recordings.iter().flat_map(|recording| {
+                let outputs = recording.output.iter().copied();
+                recording.input.iter().copied().zip(outputs)
+            }))),
             RivalKind::MeanCurve => Self::MeanCurve(mean_curve::MeanCurve::fit(recordings)),
             RivalKind::BranchPolynomial => {
                 Self::BranchPolynomial(branch_polynomial::BranchPolynomial::fit(recordings))

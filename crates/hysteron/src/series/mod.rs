@@ -5,7 +5,7 @@
 //! that jump from reading to reading. `spikes` finds isolated readings, `jumps` jumps and bursts of
 //! wrong readings, `lost` all readings that are wrong, `frozen` a channel that stands still, and
 //! `repeated` rows that come twice, and `clipped` an output that is cut off. `spread` gives range,
-//! mean and standard deviation, `fair` the range that wrong readings do not set. `runs` keeps
+//! mean and standard deviation, `line` the line through pairs, `fair` the range that wrong readings do not set. `runs` keeps
 //! values that change seldom.
 
 pub(crate) mod clipped;
@@ -17,6 +17,7 @@ pub(crate) mod frozen;
 #[cfg(feature = "data")]
 pub(crate) mod interpolate;
 pub(crate) mod jumps;
+mod line;
 pub(crate) mod lost;
 pub(crate) mod noise;
 pub(crate) mod repeated;
@@ -32,6 +33,7 @@ pub use clipped::CutOff;
 pub use errors::Errors;
 pub use fair::fair_range;
 pub(crate) use fair::fair_range_of_all;
+pub(crate) use line::Line;
 pub(crate) use runs::Runs;
 pub(crate) use spread::range_of_all;
 pub use spread::{mean_and_deviation, range};
