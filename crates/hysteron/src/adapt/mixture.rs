@@ -6,13 +6,13 @@
 //! Shares come from errors at two horizons ([`Shares`]). The output *expected* at the next sample is
 //! the mean by the errors of such expectations. The *model*, which an inverse uses and a file
 //! keeps, is for the stroke to come: its shares come from the errors of weights as they were at the
-//! last turning point of the input.
+//! last turning point of the input, and by a third from those of the next sample.
 
 use super::expert::Expert;
 use super::learner::Learner;
 use super::learns::{Learns, writable};
 use super::refit::{Core, Refit};
-use super::shares::Shares;
+use super::shares::{Shares, mean};
 use super::strokes::{LEAST, Strokes};
 use super::unsure::Unsure;
 use crate::error::Result;
@@ -37,6 +37,11 @@ pub struct AutoOptions {
 /// How far a model that settles goes on after the last cycle, in differences of the last two.
 const TREND: f64 = 0.5;
 
+/// What the next sample weighs in the shares of the model, beside the stroke to come. The experts
+/// go on learning on the way there: one that follows each change may foretell a stroke badly, and
+/// be the best all the same.
+const NEXT: f64 = 1.0 / 3.0;
+
 /// The shares of both horizons.
 #[derive(Debug, Clone)]
 struct Both {
@@ -44,6 +49,13 @@ struct Both {
     near: Shares,
     /// A stroke ahead.
     far: Shares,
+}
+
+impl Both {
+    /// The shares of what the model follows.
+    fn of_model(&self) -> Vec<f64> {
+        self.far.beside(&self.near, NEXT)
+    }
 }
 
 /// The part of the way to what the experts know that the model goes at a sample between turning
@@ -73,7 +85,7 @@ pub(super) struct Mixture {
     trusted: Both,
     pending: Both,
     good: Good,
-    /// What follows the mean of the experts by the far shares.
+    /// What follows the mean of the experts by the model's shares.
     weights: Vec<f64>,
     offset: f64,
     strokes: Strokes,
@@ -139,7 +151,7 @@ impl Mixture {
     /// The experts, each with its share of what the model follows.
     pub(super) fn shares(&self) -> Vec<(&'static str, f64)> {
         let names = self.experts.iter().map(|expert| expert.name);
-        names.zip(self.shares.far.all().iter().copied()).collect()
+        names.zip(self.shares.of_model()).collect()
     }
 
     pub(super) fn weights(&self) -> &[f64] {
@@ -195,7 +207,7 @@ impl Mixture {
             outcomes.push(learning.outcome);
         }
         self.look_at_start()?;
-        let output = self.shares.near.mean(outputs.iter().copied());
+        let output = mean(self.shares.near.all(), outputs.iter().copied());
         let outcome = joint(&outcomes);
         let believed = matches!(
             outcome,
@@ -302,17 +314,18 @@ impl Mixture {
     /// Takes `part` of the way to the mean of the experts, and writes that to `core`, unless its
     /// weights cannot be summed.
     fn mix(&mut self, core: &mut Core, part: f64) {
-        let shares = &self.shares.far;
+        let shares = self.shares.of_model();
         let on = |from: f64, to: f64| from + part * (to - from);
-        let level = shares.mean(self.experts.iter().map(|expert| expert.learns.level()));
+        let levels = self.experts.iter().map(|expert| expert.learns.level());
+        let level = mean(&shares, levels);
         let offset = on(self.offset, level);
         let each = self.experts.iter().map(|expert| expert.learns.weights());
         let each: Vec<Vec<f64>> = each.collect();
-        let mean = |n: usize| shares.mean(each.iter().map(|weights| weights[n]));
+        let all = |n: usize| mean(&shares, each.iter().map(|weights| weights[n]));
         // Rounding may take a mean of zeros and small numbers below zero.
         let weights = self.weights.iter().enumerate();
         let weights: Vec<f64> = weights
-            .map(|(n, weight)| on(*weight, mean(n)).max(0.0))
+            .map(|(n, weight)| on(*weight, all(n)).max(0.0))
             .collect();
         if core.set_weights(&weights).is_ok() {
             (self.weights, self.offset) = (weights, offset);

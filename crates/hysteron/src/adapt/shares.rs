@@ -55,13 +55,13 @@ impl Shares {
         &self.shares
     }
 
-    /// The mean of the predictors' `values`, each by its share. Where all are equal it is exactly
-    /// their value.
-    pub(super) fn mean(&self, values: impl IntoIterator<Item = f64>) -> f64 {
-        let mut values = values.into_iter();
-        let first = values.next().unwrap_or_default();
-        let others = self.shares[1..].iter().zip(values);
-        first + others.map(|(v, y)| v * (y - first)).sum::<f64>()
+    /// Shares by the losses of both, those of the `other` by a `part`: the geometric mean.
+    pub(super) fn beside(&self, other: &Self, part: f64) -> Vec<f64> {
+        let pairs = self.shares.iter().zip(&other.shares);
+        let joint = pairs.map(|(own, other)| own.powf(1.0 - part) * other.powf(part));
+        let joint: Vec<f64> = joint.collect();
+        let sum: f64 = joint.iter().sum();
+        joint.iter().map(|share| share / sum).collect()
     }
 
     /// Gives the shares anew after the predictors had these `errors`, which count as so many samples
@@ -102,6 +102,14 @@ impl Shares {
             *share = (1.0 - given) * *share / sum + each;
         }
     }
+}
+
+/// The mean of `values`, each by its share. Where all are equal it is exactly their value.
+pub(super) fn mean(shares: &[f64], values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut values = values.into_iter();
+    let first = values.next().unwrap_or_default();
+    let others = shares[1..].iter().zip(values);
+    first + others.map(|(v, y)| v * (y - first)).sum::<f64>()
 }
 
 #[cfg(test)]
