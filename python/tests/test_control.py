@@ -309,6 +309,8 @@ def test_pid_by_hand():
     assert pid.step(1.0, 0.5) == 2.0 + 0.25
     assert pid.step(-1.0, 0.5, bias=10.0) == 10.0 - 2.0 + 0.0
     assert pid.hold(bias=1.0) == -1.0
+    assert pid.relax(4.0, bias=1.0) == 1.0 - 1.0  # half of the way to an empty integral
+    assert pid.hold(bias=1.0) == 0.0
     pid.reset()
     assert pid.step(1.0, 0.5, limits=(-1, 1)) == 1.0
     assert repr(pid) == "Pid(2, integral_s=4, derivative_s=0)"

@@ -339,6 +339,11 @@ static hys_real answer(hys_controller *self, hys_real feedforward, hys_real refe
     }
     if (control->feedback) {
         self->measured = nothing();
+        if (control->integral_s > ZERO && low < bias && bias < high) {
+            /* The other terms answered to a moment that has passed. */
+            hys_real dt = dt_of(self), part = dt / (dt + control->integral_s);
+            self->correction += (self->integral - self->correction) * part;
+        }
         return hys_clamp(bias + self->correction, low, high);
     }
     return hys_clamp(bias, low, high);

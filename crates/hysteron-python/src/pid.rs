@@ -247,6 +247,38 @@ impl Pid {
         Ok(self.inner.with(py, |pid| pid.hold(bias, limits)))
     }
 
+    /// The output without a reading beside a feedforward: only the integral is a memory of what that
+    /// one lacks. The other terms fade with the integral time; without one all stays, as in `hold`.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt, bias, limits
+    ///     As for `step`.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///
+    /// Examples
+    /// --------
+    /// >>> pid = pyhysteron.control.Pid(2.0, integral_s=4.0)
+    /// >>> pid.step(1.0, 0.5)
+    /// 2.25
+    /// >>> pid.relax(4.0), pid.relax(400.0)
+    /// (1.25, 0.2599009900990099)
+    #[pyo3(signature = (dt, *, bias=0.0, limits=None))]
+    fn relax(
+        &self,
+        py: Python<'_>,
+        dt: f64,
+        bias: f64,
+        limits: Option<(f64, f64)>,
+    ) -> PyResult<f64> {
+        let (dt, bias) = (interval("dt", dt)?, number("bias", bias)?);
+        let limits = ordered(limits)?;
+        Ok(self.inner.with(py, |pid| pid.relax(dt, bias, limits)))
+    }
+
     /// At rest again, with nothing integrated.
     ///
     /// Examples

@@ -308,7 +308,7 @@ impl Loop {
             (true, Some(measured), Some(error)) => self
                 .pid
                 .follow(error, measured, dt, bias, limits, self.held),
-            (true, ..) => self.pid.hold(bias, limits),
+            (true, ..) => self.pid.relax(dt, bias, limits),
             (false, ..) => clamp(bias, limits.0, limits.1),
         }
     }

@@ -160,6 +160,28 @@ impl Pid {
         self.last = None;
         clamp(bias + self.correction, low, high)
     }
+
+    /// As [`Pid::hold`], `dt` s after the last sample, for a loop with a feedforward in `bias`. That
+    /// one goes on to where the error is zero on the average, and only the integral is a memory of
+    /// what it lacks: the other terms answered to a moment that has passed, and fade with the
+    /// integral time. Without an integral term all is kept, and so it is while the feedforward asks
+    /// for a limit or more.
+    ///
+    /// ```
+    /// use hysteron_core::control::{Pid, Terms};
+    /// let mut pid = Pid::new(Terms { gain: 2.0, integral_s: 10.0, derivative_s: 0.0 });
+    /// let drive = pid.step(1.0, 1.0, 5.0, (0.0, 10.0), (false, false));
+    /// assert_eq!(drive, 5.0 + 2.0 + 0.2);
+    /// let later = (0..100).map(|_| pid.relax(1.0, 5.0, (0.0, 10.0))).last();
+    /// assert!((later.unwrap() - (5.0 + 0.2)).abs() < 1e-3);
+    /// ```
+    pub fn relax(&mut self, dt: f64, bias: f64, limits: (f64, f64)) -> f64 {
+        let time = self.terms.integral_s;
+        if time > 0.0 && limits.0 < bias && bias < limits.1 {
+            self.correction += (self.integral - self.correction) * (dt / (dt + time));
+        }
+        self.hold(bias, limits)
+    }
 }
 
 /// As [`f64::clamp`], without its panic for limits in the wrong order. NaN gives `low`.

@@ -6,7 +6,7 @@
 //! Shares come from errors at two horizons ([`Shares`]). The output *expected* at the next sample is
 //! the mean by the errors of such expectations. The *model*, which an inverse uses and a file
 //! keeps, is for the stroke to come: its shares come from the errors of weights as they were at the
-//! last turning point of the input, and by a third from those of the next sample.
+//! last turning point of the input, and by a quarter from those of the next sample.
 
 use super::expert::Expert;
 use super::learner::Learner;
@@ -40,7 +40,7 @@ const TREND: f64 = 0.5;
 /// What the next sample weighs in the shares of the model, beside the stroke to come. The experts
 /// go on learning on the way there: one that follows each change may foretell a stroke badly, and
 /// be the best all the same.
-const NEXT: f64 = 1.0 / 3.0;
+const NEXT: f64 = 1.0 / 4.0;
 
 /// The shares of both horizons.
 #[derive(Debug, Clone)]

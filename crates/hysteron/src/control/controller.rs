@@ -40,9 +40,10 @@ pub struct Action {
 /// A [`Scheme`] at work. At each sample: read the device, call [`step`](Controller::step), write
 /// the drive.
 ///
-/// If the output's sensor gives nothing new, the feedback is held, the feedforward continues and
-/// nothing is learned. If the input's sensor gives nothing new, the inner loop holds the drive for
-/// [`Scheme::stuck_s`] and then sets the lowest drive.
+/// If the output's sensor gives nothing new, nothing is learned, and the feedback is held; beside an
+/// inverse, which continues, only its integral stays ([`Pid::relax`]). If the input's sensor gives
+/// nothing new, the inner loop holds the drive for [`Scheme::stuck_s`] and then sets the lowest
+/// drive.
 ///
 /// A reading that stands still to the last bit where the output has to move is taken as missing too
 /// ([`Controller::stuck_s`]), and so is a spike, with [`Scheme::gate`].
@@ -606,6 +607,9 @@ impl Controller {
         Ok(match (&mut self.pid, measured, error) {
             (Some(pid), Some(measured), Some(error)) => {
                 pid.follow(error, measured, self.dt, bias, commands, self.held)
+            }
+            (Some(pid), ..) if self.scheme.compensator.is_some() => {
+                pid.relax(self.dt, bias, commands)
             }
             (Some(pid), ..) => pid.hold(bias, commands),
             (None, ..) => clamp(bias, commands.0, commands.1),

@@ -153,6 +153,40 @@ fn nothing_jumps_when_the_reading_goes_and_comes() {
 }
 
 #[test]
+fn beside_a_feedforward_only_the_integral_outlives_the_readings() {
+    let limits = (-100.0, 100.0);
+    let at_work = || {
+        let mut pid = Pid::new(gains(2.0, 5.0, 0.5));
+        let drive =
+            (0..200).map(|n| pid.step(f64::from(n % 7) - 2.5, 0.1, 20.0, limits, (false, false)));
+        let drive = drive.last().unwrap();
+        (pid, drive)
+    };
+    // The integral alone: what a step without an error gives, at a sample that lasts no time.
+    let (mut pid, before) = at_work();
+    pid.hold(20.0, limits);
+    let integral = pid.step(0.0, 1e-12, 20.0, limits, (false, false)) - 20.0;
+    let (mut pid, _) = at_work();
+    for n in 1..200_u32 {
+        let left = (1.0_f64 + 0.1 / 5.0).powi(-(n as i32));
+        let bias = f64::from(n % 3);
+        let drive = pid.relax(0.1, bias, limits);
+        let expected = bias + integral + (before - 20.0 - integral) * left;
+        assert!((drive - expected).abs() < 1e-9, "{n}: {drive} {expected}");
+    }
+    // A feedforward that asks for a limit stays there.
+    let drive = pid.relax(0.1, 100.0, limits);
+    assert!((0..99).all(|_| pid.relax(0.1, 100.0, limits) == drive));
+    // Without an integral nothing is a memory, and all is held.
+    let mut pid = Pid::new(gains(2.0, 0.0, 0.0));
+    let drive = pid.step(1.5, 0.1, 20.0, limits, (false, false));
+    assert_eq!(
+        (0..9).map(|_| pid.relax(0.1, 20.0, limits)).last(),
+        Some(drive)
+    );
+}
+
+#[test]
 fn no_number_makes_it_leave_its_limits() {
     let wild = [
         f64::NAN,
