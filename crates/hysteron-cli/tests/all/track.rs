@@ -74,7 +74,11 @@ fn says_what_is_wrong_with_a_scenario() {
         ("load_n = 6.0", "load_n = 60.0", "60"),
         ("at_s = 250", "at_s = 9000", "disturbance"),
         ("period_s = 300", "period_s = 0", "reference"),
-        ("forgetting = 0.9995", "forgetting = 1.5", "forgetting"),
+        (
+            "[loop]",
+            "[adaptation]\nmethod = \"least-squares\"\nforgetting = 1.5\n[loop]",
+            "forgetting",
+        ),
         ("levels = 10", "levels = 1", "levels"),
     ];
     for (from, to, expected) in cases {

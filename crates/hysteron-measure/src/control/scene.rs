@@ -86,11 +86,17 @@ impl Scene {
 
     /// Where an adaptive inverse has more than `most` times the error of the fixed one.
     pub(super) fn lost_to_fixed(&self, most: f64) -> Vec<String> {
-        let alone = self.lost("adaptive inverse", &["inverse"], most);
-        let both = self.lost("adaptive inverse + PID", &["inverse + PID"], most);
-        let alone = alone.into_iter().map(|(w, ratio)| (w, "alone", ratio));
-        let both = both.into_iter().map(|(w, ratio)| (w, "with PID", ratio));
-        let each = alone.chain(both);
+        let [fixed, adaptive] = JOINT;
+        let (fixed_jointly, adaptive_jointly) = (jointly(fixed), jointly(adaptive));
+        let pairs = [
+            ("alone", "adaptive inverse", "inverse"),
+            ("with PID", adaptive, fixed),
+            ("with joint tuning", &adaptive_jointly, &fixed_jointly),
+        ];
+        let each = pairs.into_iter().flat_map(|(how, learns, stays)| {
+            let lost = self.lost(learns, &[stays], most).into_iter();
+            lost.map(move |(w, ratio)| (w, how, ratio))
+        });
         each.map(|(w, how, ratio)| format!("{}, {how}, {ratio:.2}", words(&self.windows[w])))
             .collect()
     }
@@ -113,7 +119,7 @@ impl Scene {
             .iter()
             .filter(|(name, _)| name.starts_with("PI/RLS"));
         let won = rows.flat_map(|(name, _)| {
-            let joint = JOINT.map(|name| format!("{name}{}", by(Tuning::Model)));
+            let joint = JOINT.map(jointly);
             let all = JOINT.into_iter().chain(joint.iter().map(String::as_str));
             self.lost(name, &all.collect::<Vec<_>>(), 0.0).into_iter()
         });
@@ -137,6 +143,11 @@ impl Scene {
         let each = (0..self.windows.len()).map(|w| (w, ratio(w)));
         each.filter(|(_, ratio)| *ratio > most).collect()
     }
+}
+
+/// The row of a controller whose gains come from the model.
+fn jointly(name: &str) -> String {
+    format!("{name}{}", by(Tuning::Model))
 }
 
 fn by(tuning: Tuning) -> &'static str {
@@ -175,8 +186,7 @@ fn by_model(scenario: &Scenario, windows: &[usize]) -> Result<(Vec<Row>, String)
     scenario.controllers = kinds;
     let found = track(&scenario, Progress::NONE)?;
     let row = |(k, name): (usize, &&str)| {
-        let name = format!("{name}{}", by(Tuning::Model));
-        (name, medians(&found, k, windows))
+        (jointly(name), medians(&found, k, windows))
     };
     let rows = names.iter().enumerate().map(row).collect();
     // Fixed or adaptive, the gains are those of the fixed model.

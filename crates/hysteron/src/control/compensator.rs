@@ -422,7 +422,25 @@ impl Compensator {
             dt,
             ..target.into()
         };
-        self.kind.solve_from(wanted, wanted_now, &after)
+        let goes = |state: &State| match state.is_rising() == (sign == Sign::Positive) {
+            true => Direction::Rising,
+            false => Direction::Falling,
+        };
+        let due = heading.or(branch.map(|(branch, _)| branch));
+        let went = goes(wanted);
+        let solution = self.kind.solve_from(wanted, wanted_now, &after)?;
+        let against = due == Some(went) && went != goes(wanted);
+        if against && !matches!(self.kind, Kind::Fixed { .. }) {
+            // Not the target has turned, but the model has learned that the inputs asked for lead
+            // elsewhere. Where the input really went, it may be on its way.
+            let (mut anew, _) = self.kind.at();
+            let other = self.kind.solve_from(&mut anew, wanted_now, &after)?;
+            if goes(&anew) == went {
+                self.wanted = Some(anew);
+                return Ok(other);
+            }
+        }
+        Ok(solution)
     }
 
     /// Restarts the inverse from the last measured input. While the input is not measured, it may
