@@ -13,7 +13,7 @@ use hysteron_sim::track::Scenario;
 use scene::Scene;
 
 /// Runs of each scenario.
-const SEEDS: u32 = 5;
+const SEEDS: u32 = 10;
 /// An error that is larger by no more than this share is as good.
 const AS_GOOD: f64 = 0.05;
 

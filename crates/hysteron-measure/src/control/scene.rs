@@ -185,9 +185,7 @@ fn by_model(scenario: &Scenario, windows: &[usize]) -> Result<(Vec<Row>, String)
     let (names, kinds): (Vec<&str>, Vec<Kind>) = kinds.copied().unzip();
     scenario.controllers = kinds;
     let found = track(&scenario, Progress::NONE)?;
-    let row = |(k, name): (usize, &&str)| {
-        (jointly(name), medians(&found, k, windows))
-    };
+    let row = |(k, name): (usize, &&str)| (jointly(name), medians(&found, k, windows));
     let rows = names.iter().enumerate().map(row).collect();
     // Fixed or adaptive, the gains are those of the fixed model.
     let first = found.tuned.first().and_then(|runs| *runs.first()?);
