@@ -8,7 +8,8 @@
  *     measured output, so that a step of the reference gives no kick.
  *   - hys_controller_go_on_from takes over from another drive without a bump.
  *   - A missing reading is NaN. The inverse then goes on, and the feedback keeps its integral.
- *     Its other terms fade with the integral time; without one all is held.
+ *     Its other terms fade with the integral time. Without an integral term, and while the inverse
+ *     asks for a limit, all is held.
  *   - A reading that stands still to the last bit where it has to move is taken as missing.
  *   - After a time without a reading, or with one that stands still, the drive is the safe one; so it
  *     is where the reading stands still but for its noise while the drive is at a limit.

@@ -25,9 +25,10 @@ use pyo3::types::PyDict;
 /// One controller for all schemes: feedforward by the inverse of a model, a PID, or both, and an
 /// optional inner loop around the input.
 ///
-/// Without readings of the output, the feedback holds, the feedforward goes on and nothing is
-/// learned. Without readings of the input, the inner loop holds the drive for `stuck_s` and then
-/// goes to the lowest drive. A controller cannot be pickled.
+/// Without readings of the output nothing is learned, and the feedback holds; beside an inverse,
+/// which goes on, only its integral stays (`Pid.relax`). Without readings of the input, the inner
+/// loop holds the drive for `stuck_s` and then goes to the lowest drive. A controller cannot be
+/// pickled.
 ///
 /// Parameters
 /// ----------

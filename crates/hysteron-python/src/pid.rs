@@ -247,8 +247,9 @@ impl Pid {
         Ok(self.inner.with(py, |pid| pid.hold(bias, limits)))
     }
 
-    /// The output without a reading beside a feedforward: only the integral is a memory of what that
-    /// one lacks. The other terms fade with the integral time; without one all stays, as in `hold`.
+    /// The output without a reading beside a feedforward in `bias`: the integral stays, and the
+    /// other terms fade with the integral time. Without an integral term, and while `bias` is at a
+    /// limit, all is held as in `hold`.
     ///
     /// Parameters
     /// ----------

@@ -161,11 +161,11 @@ impl Pid {
         clamp(bias + self.correction, low, high)
     }
 
-    /// As [`Pid::hold`], `dt` s after the last sample, for a loop with a feedforward in `bias`. That
-    /// one goes on to where the error is zero on the average, and only the integral is a memory of
-    /// what it lacks: the other terms answered to a moment that has passed, and fade with the
-    /// integral time. Without an integral term all is kept, and so it is while the feedforward asks
-    /// for a limit or more.
+    /// As [`Pid::hold`], `dt` s after the last sample, for a loop with a feedforward in `bias`. The
+    /// feedforward goes on, and the integral is a memory of what it lacks on the average. The other
+    /// terms answered to a moment that has passed: they fade with the integral time, and come back
+    /// at once with a reading. Without an integral term all is held. So it is while `bias` is at a
+    /// limit or beyond, which no term of the feedback shall leave without a reading.
     ///
     /// ```
     /// use hysteron_core::control::{Pid, Terms};

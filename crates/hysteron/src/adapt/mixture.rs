@@ -321,11 +321,11 @@ impl Mixture {
         let offset = on(self.offset, level);
         let each = self.experts.iter().map(|expert| expert.learns.weights());
         let each: Vec<Vec<f64>> = each.collect();
-        let all = |n: usize| mean(&shares, each.iter().map(|weights| weights[n]));
+        let of = |n: usize| mean(&shares, each.iter().map(|weights| weights[n]));
         // Rounding may take a mean of zeros and small numbers below zero.
         let weights = self.weights.iter().enumerate();
         let weights: Vec<f64> = weights
-            .map(|(n, weight)| on(*weight, all(n)).max(0.0))
+            .map(|(n, weight)| on(*weight, of(n)).max(0.0))
             .collect();
         if core.set_weights(&weights).is_ok() {
             (self.weights, self.offset) = (weights, offset);

@@ -104,7 +104,8 @@ impl Shares {
     }
 }
 
-/// The mean of `values`, each by its share. Where all are equal it is exactly their value.
+/// The mean of `values`, each by its share; the shares sum to 1. Where all values are equal it is
+/// exactly theirs.
 pub(super) fn mean(shares: &[f64], values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values = values.into_iter();
     let first = values.next().unwrap_or_default();
@@ -186,6 +187,12 @@ mod tests {
                 assert!((sum - 1.0).abs() < 1e-12, "{sum}");
                 let least = part * GIVEN / count as f64;
                 assert!(shares.all().iter().all(|v| *v >= least * (1.0 - 1e-12)));
+                let mut other = Shares::new(count, 1.0);
+                other.judge(&errors, 0.3);
+                let joint = shares.beside(&other, rng.random_range(0.0..1.0));
+                assert!((joint.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+                assert!(joint.iter().all(|v| v.is_finite() && *v > 0.0));
+                assert_eq!(mean(&joint, vec![0.7; count]), 0.7);
             }
         }
     }

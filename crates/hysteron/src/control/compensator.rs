@@ -9,7 +9,8 @@
 //! But weights that learn cause a problem: a turning point asked for with old weights stays in the
 //! memory of the inverse until it is wiped out. So with a learning model, the inverse restarts from
 //! the measured input where the target turns, if the model expects what is measured there. There it
-//! has to cross the dead band anyway.
+//! has to cross the dead band anyway. It also does so where the inverse would turn round by itself,
+//! because the inputs that it has asked for lead elsewhere with the new weights.
 
 use super::trust::Trust;
 use crate::adapt::{Adaptive, AdaptiveLoad};
@@ -39,6 +40,8 @@ pub struct Compensator {
     resting: u32,
     /// Whether the weights of the inverse have changed at once since that was last asked.
     changed: bool,
+    /// Whether its weights came from elsewhere while it ran.
+    renewed: bool,
     /// The output expected at the last input.
     prediction: f64,
     /// By how much the last reading was missed.
@@ -188,7 +191,7 @@ impl Compensator {
                     core.rebase(&mut wanted.operators)?;
                 }
                 **model = renewed.clone();
-                self.changed = true;
+                (self.changed, self.renewed) = (true, true);
                 Ok(())
             }
             Kind::Adaptive(_) | Kind::Load(_) => Err(Error::Control(
@@ -260,6 +263,7 @@ impl Compensator {
             input: None,
             resting: 0,
             changed: false,
+            renewed: false,
             prediction: f64::NAN,
             missed: 0.0,
         }
@@ -386,13 +390,15 @@ impl Compensator {
         if turns && expects && !matches!(self.kind, Kind::Fixed { .. }) {
             self.set_out_again();
         }
-        let (state, sign) = self.kind.at();
-        let wanted = self.wanted.get_or_insert(state);
-        let rises = wanted.is_rising() == (sign == Sign::Positive);
-        let turned = match branch {
-            Some((branch, _)) => rises != (branch == Direction::Rising),
-            None => false,
+        let (followed, sign) = self.kind.at();
+        let goes = |state: &State| match state.is_rising() == (sign == Sign::Positive) {
+            true => Direction::Rising,
+            false => Direction::Falling,
         };
+        let branch = branch.map(|(branch, _)| branch);
+        let wanted = self.wanted.get_or_insert_with(|| followed.clone());
+        let went = goes(wanted);
+        let turned = branch.is_some_and(|branch| branch != went);
         let asked = tolerance;
         let tolerance = match heading {
             None if !turned => NOT_TURNED * tolerance,
@@ -422,25 +428,32 @@ impl Compensator {
             dt,
             ..target.into()
         };
-        let goes = |state: &State| match state.is_rising() == (sign == Sign::Positive) {
-            true => Direction::Rising,
-            false => Direction::Falling,
-        };
-        let due = heading.or(branch.map(|(branch, _)| branch));
-        let went = goes(wanted);
         let solution = self.kind.solve_from(wanted, wanted_now, &after)?;
-        let against = due == Some(went) && went != goes(wanted);
-        if against && !matches!(self.kind, Kind::Fixed { .. }) {
-            // Not the target has turned, but the model has learned that the inputs asked for lead
-            // elsewhere. Where the input really went, it may be on its way.
-            let (mut anew, _) = self.kind.at();
-            let other = self.kind.solve_from(&mut anew, wanted_now, &after)?;
-            if goes(&anew) == went {
+        let turns_round = heading.or(branch) == Some(went) && goes(wanted) != went;
+        if turns_round && self.has_learned() {
+            // The model has changed, and not the target: the inputs asked for lead elsewhere now.
+            // Where the input really went, the output may be on its way all the same. What a
+            // feedback has made up for is then counted twice, until it has noticed. Measured, that
+            // costs less than a burst of drive the wrong way, also where the model still misses
+            // what is measured; to take it from the integral at once costs more.
+            let ahead = match went {
+                Direction::Rising => target.output - self.prediction,
+                Direction::Falling => self.prediction - target.output,
+            };
+            let mut anew = followed;
+            if ahead >= -asked
+                && let Ok(other) = self.kind.solve_from(&mut anew, wanted_now, &after)
+            {
                 self.wanted = Some(anew);
                 return Ok(other);
             }
         }
         Ok(solution)
+    }
+
+    /// Whether its weights may have changed.
+    fn has_learned(&self) -> bool {
+        self.renewed || !matches!(self.kind, Kind::Fixed { .. })
     }
 
     /// Restarts the inverse from the last measured input. While the input is not measured, it may

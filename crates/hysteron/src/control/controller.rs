@@ -40,10 +40,10 @@ pub struct Action {
 /// A [`Scheme`] at work. At each sample: read the device, call [`step`](Controller::step), write
 /// the drive.
 ///
-/// If the output's sensor gives nothing new, nothing is learned, and the feedback is held; beside an
-/// inverse, which continues, only its integral stays ([`Pid::relax`]). If the input's sensor gives
-/// nothing new, the inner loop holds the drive for [`Scheme::stuck_s`] and then sets the lowest
-/// drive.
+/// If the output's sensor gives nothing new, nothing is learned, and the feedback is held; beside
+/// an inverse, which continues, only its integral stays ([`Pid::relax`]). If the input's sensor
+/// gives nothing new, the inner loop holds the drive for [`Scheme::stuck_s`] and then sets the
+/// lowest drive.
 ///
 /// A reading that stands still to the last bit where the output has to move is taken as missing too
 /// ([`Controller::stuck_s`]), and so is a spike, with [`Scheme::gate`].

@@ -1,4 +1,5 @@
-//! Feedback beside an inverse: a reading that is late by its filter does not pull the drive away.
+//! Feedback beside an inverse: a reading that is late by its filter does not pull the drive away,
+//! and without readings the integral stays alone.
 
 use hysteron::control::{Compensator, Controller, Gains, Reading, Reference, Scheme};
 use hysteron::{Model, Operator, Plane, Sign};
@@ -67,4 +68,44 @@ fn what_an_exact_inverse_does_is_left_alone() {
             );
         }
     }
+}
+
+/// The reading is off by a constant until the sensor ends.
+#[test]
+fn without_readings_an_inverse_goes_on_with_the_integral_alone() {
+    let plane = Plane::new(0.0, 10.0, 5).unwrap();
+    let model = Model::new(Operator::Mkp, plane, vec![1.0; 15], 0.0, Sign::Positive).unwrap();
+    let gains = Gains {
+        gain: 0.1,
+        integral_s: 2.0,
+        derivative_s: 0.0,
+    };
+    let alone = Scheme {
+        pid: Some(gains),
+        ..Scheme::new(0.01, (0.0, 10.0))
+    };
+    let beside = Scheme {
+        compensator: Some(Compensator::fixed(&model).unwrap()),
+        ..alone.clone()
+    };
+    let [alone, beside] = [alone, beside].map(|scheme| {
+        let mut controller = Controller::new(scheme).unwrap();
+        let target = Reference {
+            output: 6.0,
+            heading: None,
+        };
+        let mut drive = |output: f64| {
+            let reading = Reading {
+                output,
+                input: None,
+            };
+            controller.step(target, reading).unwrap().drive
+        };
+        let last = (0..100).map(|_| drive(4.0)).last().unwrap();
+        let later = (0..2000).map(|_| drive(f64::NAN)).last().unwrap();
+        later - last
+    });
+    assert_eq!(alone, 0.0);
+    // The proportional term, 0.1 of an error of 2, but for what e^-10 leaves of it.
+    assert!((beside + 0.2).abs() < 1e-4, "{beside}");
 }

@@ -157,33 +157,35 @@ fn beside_a_feedforward_only_the_integral_outlives_the_readings() {
     let limits = (-100.0, 100.0);
     let at_work = || {
         let mut pid = Pid::new(gains(2.0, 5.0, 0.5));
-        let drive =
-            (0..200).map(|n| pid.step(f64::from(n % 7) - 2.5, 0.1, 20.0, limits, (false, false)));
-        let drive = drive.last().unwrap();
+        let errors = (0..200).map(|n| f64::from(n % 7) - 2.5);
+        let drives = errors.map(|error| pid.step(error, 0.1, 20.0, limits, (false, false)));
+        let drive = drives.last().unwrap();
         (pid, drive)
     };
-    // The integral alone: what a step without an error gives, at a sample that lasts no time.
+    // Without an error and a derivative there is the integral alone.
     let (mut pid, before) = at_work();
     pid.hold(20.0, limits);
-    let integral = pid.step(0.0, 1e-12, 20.0, limits, (false, false)) - 20.0;
+    let integral = pid.step(0.0, 0.1, 20.0, limits, (false, false)) - 20.0;
+    let moment = before - 20.0 - integral;
+    assert!(moment.abs() > 1.0, "{moment}");
     let (mut pid, _) = at_work();
-    for n in 1..200_u32 {
-        let left = (1.0_f64 + 0.1 / 5.0).powi(-(n as i32));
+    for n in 1..200 {
         let bias = f64::from(n % 3);
         let drive = pid.relax(0.1, bias, limits);
-        let expected = bias + integral + (before - 20.0 - integral) * left;
-        assert!((drive - expected).abs() < 1e-9, "{n}: {drive} {expected}");
+        let expected = bias + integral + moment * (1.0_f64 + 0.1 / 5.0).powi(-n);
+        // Rounding of two hundred steps.
+        assert!((drive - expected).abs() < 1e-11, "{n}: {drive} {expected}");
     }
-    // A feedforward that asks for a limit stays there.
-    let drive = pid.relax(0.1, 100.0, limits);
-    assert!((0..99).all(|_| pid.relax(0.1, 100.0, limits) == drive));
+    // A feedforward that asks for a limit: all is held.
+    let (mut pid, _) = at_work();
+    let held = pid.hold(20.0, limits);
+    (0..99).for_each(|_| _ = pid.relax(0.1, 100.0, limits));
+    assert_eq!(pid.hold(20.0, limits), held);
     // Without an integral nothing is a memory, and all is held.
     let mut pid = Pid::new(gains(2.0, 0.0, 0.0));
     let drive = pid.step(1.5, 0.1, 20.0, limits, (false, false));
-    assert_eq!(
-        (0..9).map(|_| pid.relax(0.1, 20.0, limits)).last(),
-        Some(drive)
-    );
+    let later = (0..9).map(|_| pid.relax(0.1, 20.0, limits)).last();
+    assert_eq!(later, Some(drive));
 }
 
 #[test]
