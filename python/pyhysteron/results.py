@@ -1483,6 +1483,8 @@ class AdaptedComparison(_Result):
     session : bool
         Whether the model is the one before with another offset, gain and shift, as of another
         session: from one loop at most, where that errs far less.
+    one_load : bool
+        Whether the model depended on a load before, and is for one load now: the recording's.
     """
 
     whole: Compared
@@ -1501,6 +1503,7 @@ class AdaptedComparison(_Result):
     start: str
     covered: float
     session: bool
+    one_load: bool
 
 
 @dataclass(frozen=True, eq=False, repr=False)

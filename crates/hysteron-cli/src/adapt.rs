@@ -175,6 +175,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "late_spread": adapted.late_spread,
         "counts": adapted.counts,
         "session": adapted.session,
+        "one_load": adapted.one_load,
         "shares": adapted.shares.iter().copied().collect::<std::collections::BTreeMap<_, _>>(),
         "drift": adapted.drift,
         "shift": adapted.shift.as_ref().map(|found| json!({
@@ -278,6 +279,15 @@ fn to_text(
         lines.push(format!(
             "the input made one loop at most: the model is no mean of learners, but the one before \
              with another {numbers}, as of another session"
+        ));
+    }
+    if let (true, Some(dependence)) = (adapted.one_load, &model.load) {
+        let (low, high) = dependence.range();
+        lines.push(format!(
+            "the model before was for loads from {} to {}; this one is for the load of the \
+             recording alone",
+            dependence.quantity.text(low),
+            dependence.quantity.text(high)
         ));
     }
     if let Some(found) = &adapted.shift {

@@ -160,6 +160,7 @@ pub(crate) fn adapt<'py>(
     comparison.set_item("start", to_python(py, &adapted.start)?)?;
     comparison.set_item("covered", adapted.covered)?;
     comparison.set_item("session", adapted.session)?;
+    comparison.set_item("one_load", adapted.one_load)?;
     table.set_item("output_model", PyArray1::from_vec(py, adapted.output_model))?;
     if let Some(found) = adapted.shift {
         table.set_item("shift_model", PyArray1::from_vec(py, found.shifts))?;

@@ -115,6 +115,15 @@ fn an_unknown_load_is_found_and_told() {
     let line = "adapt model.json unknown.csv --input x --output y --method load -o adapted.json \
                 --table table.csv";
     let said = json(folder.path(), line);
+    assert_eq!(said["one_load"], true);
+    let others = "adapt model.json unknown.csv --input x --output y -o one.json --force";
+    let others = run(folder.path(), others);
+    let told = "for loads from 0 to 4.000; this one is for the load of the recording alone";
+    assert!(
+        text(&others.stdout).contains(told),
+        "{}",
+        text(&others.stdout)
+    );
     let number = |name: &str| said["shift"][name].as_f64().unwrap();
     // From the middle, 2, to 3: two units of the input, a load to a tenth of the range.
     assert!((number("load") - 3.0).abs() < 0.4, "{said}");

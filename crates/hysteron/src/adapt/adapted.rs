@@ -75,6 +75,9 @@ pub struct Adapted {
     /// session, and no mean of learners: from recordings of one loop at most, where that errs less
     /// than what [`crate::Learner::Auto`] learned, and at most half as much as the model left alone.
     pub session: bool,
+    /// Whether the model depended on a load before, and is for one load now: that of the
+    /// recordings.
+    pub one_load: bool,
     /// What [`crate::Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
     /// The options of what learned.

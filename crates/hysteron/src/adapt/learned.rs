@@ -195,6 +195,7 @@ impl Learned {
             covered: self.covered,
             shares: self.shares,
             session: self.session,
+            one_load: false,
             shift: self.shift,
             options: self.options,
         })

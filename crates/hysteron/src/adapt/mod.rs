@@ -96,12 +96,25 @@ pub fn adapt(
     recordings.iter().try_for_each(|r| model.check_units(r))?;
     let recordings = &*model.delay().of_recordings(recordings);
     let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
-    if options.learner == Learner::Load {
-        return unknown_load::adapt(model, (recordings, &joined), options, progress);
-    }
+    let mut adapted = match options.learner {
+        Learner::Load => unknown_load::adapt(model, (recordings, &joined), options, progress)?,
+        _ => adapt_operators(model, (recordings, &joined), options, progress)?,
+    };
+    adapted.one_load = model.load.is_some() && adapted.model.load.is_none();
+    Ok(adapted)
+}
+
+/// As [`adapt`], for the learners of weights and offset. `joined` are the recordings one after the
+/// other.
+fn adapt_operators(
+    model: &Model,
+    (recordings, joined): (&[Recording], &Recording),
+    options: &AdaptOptions,
+    progress: Progress<'_>,
+) -> Result<Adapted> {
     // The operators between the stages of a model learn, and what it gives behind them is judged.
     if model.is_plain() || model.load.is_some() {
-        return learn(model, (recordings, &joined), options, progress)?.judged(&joined, options);
+        return learn(model, (recordings, joined), options, progress)?.judged(joined, options);
     }
     let seen = recordings.iter().map(|recording| {
         let seen = model.recording_within(recording)?;
@@ -111,7 +124,7 @@ pub fn adapt(
     let seen_joined = one_after_the_other(&seen).ok_or_else(no_recordings)?;
     let mut learned = learn(&model.within(), (&seen, &seen_joined), options, progress)?;
     learned.pass(model, recordings);
-    let mut adapted = learned.judged(&joined, options)?;
+    let mut adapted = learned.judged(joined, options)?;
     let mut whole = model.around_within(adapted.model.operators().clone())?;
     whole.fit = adapted.model.fit.take();
     adapted.model = adapted.model.starts(whole, Start::Fitted)?;

@@ -170,8 +170,11 @@ fn a_load_is_found_from_the_output_alone() {
         // The two parts hold the plant up to the fit's error, well below a hundredth; a refit has
         // all weights, and the model in the middle to begin with.
         assert!(last.adapting.rmse < 0.05 * last.fixed.rmse, "{last:?}");
-        assert!(adapted.model.load.is_none());
+        assert!(adapted.model.load.is_none() && adapted.one_load);
     }
+    let plain = model.at_load(0.5).unwrap();
+    let adapted = adapt(&plain, &target, &by(Learner::Drift), Progress::NONE).unwrap();
+    assert!(!adapted.one_load);
     let refused = adapt(&model, &target, &by(Learner::LeastSquares), Progress::NONE).unwrap_err();
     assert!(
         refused.to_string().contains("depends on the load"),
