@@ -29,7 +29,7 @@ pub struct Score {
     /// RMS of what the model expected, before it learned, less the output; NaN without a model.
     pub prediction_rmse: f64,
     /// The same with the weights as they were when the window began, and never learned since; NaN
-    /// without a model.
+    /// without a model, and where a model with stages learns.
     pub frozen_rmse: f64,
     /// Median lag of the output after reversals of the reference, s ([`reversal_lags`]); NaN
     /// without a reversal.
@@ -132,6 +132,8 @@ impl Score {
             .filter(|e| e.is_finite())
             .collect());
         let frozen_rmse = match trace.snapshots.iter().rfind(|s| s.time <= window.from_s) {
+            // The weights alone are not the model.
+            Some(_) if !model.is_plain() => f64::NAN,
             Some(snapshot) => {
                 let output = free_run(trace, snapshot, model)?;
                 rms(inside
