@@ -253,7 +253,9 @@ impl Pid {
     ///
     /// Parameters
     /// ----------
-    /// dt, bias, limits
+    /// dt : float
+    ///     Time since the sample before, s.
+    /// bias, limits
     ///     As for `step`.
     ///
     /// Returns
