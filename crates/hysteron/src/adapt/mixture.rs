@@ -40,7 +40,7 @@ const TREND: f64 = 0.5;
 /// What the next sample weighs in the shares of the model, beside the stroke to come. The experts
 /// go on learning on the way there: one that follows each change may foretell a stroke badly, and
 /// be the best all the same.
-const NEXT: f64 = 1.0 / 4.0;
+const NEXT: f64 = 0.25;
 
 /// The shares of both horizons.
 #[derive(Debug, Clone)]
@@ -321,11 +321,11 @@ impl Mixture {
         let offset = on(self.offset, level);
         let each = self.experts.iter().map(|expert| expert.learns.weights());
         let each: Vec<Vec<f64>> = each.collect();
-        let of = |n: usize| mean(&shares, each.iter().map(|weights| weights[n]));
+        let mixed = |n: usize| mean(&shares, each.iter().map(|weights| weights[n]));
         // Rounding may take a mean of zeros and small numbers below zero.
         let weights = self.weights.iter().enumerate();
         let weights: Vec<f64> = weights
-            .map(|(n, weight)| on(*weight, of(n)).max(0.0))
+            .map(|(n, weight)| on(*weight, mixed(n)).max(0.0))
             .collect();
         if core.set_weights(&weights).is_ok() {
             (self.weights, self.offset) = (weights, offset);

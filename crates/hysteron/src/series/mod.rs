@@ -5,8 +5,8 @@
 //! that jump from reading to reading. `spikes` finds isolated readings, `jumps` jumps and bursts of
 //! wrong readings, `lost` all readings that are wrong, `frozen` a channel that stands still, and
 //! `repeated` rows that come twice, and `clipped` an output that is cut off. `spread` gives range,
-//! mean and standard deviation, `line` the line through pairs, `fair` the range that wrong readings do not set. `runs` keeps
-//! values that change seldom.
+//! mean and standard deviation, `line` the line through pairs, `fair` the range that wrong readings
+//! do not set. `runs` keeps values that change seldom.
 
 pub(crate) mod clipped;
 pub(crate) mod coarse;
