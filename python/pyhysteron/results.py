@@ -866,6 +866,9 @@ class Evaluation(_Result):
         Number of inputs outside the plane.
     estimated_from : int or None
         Samples at the beginning from which the start was estimated; None where it was given.
+    rests : list of float or None
+        Of each recording the drive at which the body was at rest before it, found from its
+        beginning; None for that of the first sample, and for a model without a body.
     was_fitted : bool
         Whether the model was fitted to the file of this recording. Then the errors say how well it
         fits, not how well it predicts.
@@ -884,6 +887,7 @@ class Evaluation(_Result):
     verdict: Verdict
     clipped: int
     estimated_from: int | None
+    rests: list[float | None]
     was_fitted: bool
     seen_for_band: bool
     band: BandTest | _MaybeNone

@@ -232,6 +232,7 @@ pub unsafe extern "C" fn hysteron_batch_run_in(
             let around = Surroundings {
                 time: time.as_deref(),
                 load: (!load.is_empty()).then_some(load),
+                rest: None,
             };
             let before = usize::from(given(last_time).is_some());
             let dt = |n: usize| {

@@ -59,6 +59,7 @@ fn expected(model: &Model, series: &Series) -> Vec<f64> {
     let around = Surroundings {
         time: model.is_timed().then_some(&series.time),
         load: model.load.as_ref().map(|_| &series.load[..]),
+        rest: None,
     };
     // The interval is told to a model without time as well.
     let input = model

@@ -171,6 +171,7 @@ fn runs_are_those_of_the_library_at_once_and_in_pieces() {
         let around = Surroundings {
             time: Some(&time),
             load: Some(&load),
+            rest: None,
         };
         let expected = both.model.simulate_in(&input, around).unwrap();
         let mut own = both.model.start();
@@ -279,6 +280,7 @@ fn the_inverse_is_that_of_the_library() {
         let around = Surroundings {
             time: Some(&time),
             load: Some(&load),
+            rest: None,
         };
         let mut start = both.model.off();
         let expected = both.model.inverse().unwrap();

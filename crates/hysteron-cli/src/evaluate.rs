@@ -83,6 +83,9 @@ pub(crate) fn to_json(evaluation: &Evaluation) -> Value {
     if let Some(samples) = evaluation.estimated_from {
         object["start_estimated_from"] = json!(samples);
     }
+    if evaluation.rests.iter().any(Option::is_some) {
+        object["rests"] = json!(evaluation.rests);
+    }
     if let Some(band) = &evaluation.band {
         object["band_coverage_percent"] = json!(band.coverage_percent);
     }
@@ -143,6 +146,8 @@ fn to_text(evaluation: &Evaluation, recordings: &[Recording]) -> String {
         };
         result += &format!("\nthe start was estimated from the first {samples} samples{of}");
     }
+    let rested = hysteron::rested_words(&evaluation.rests, &recordings[0].input_quantity);
+    result.extend(rested.map(|words| format!("\n{words}")));
     if let Err(reason) = &evaluation.inverse {
         result += &format!("\nno inverse: {reason}");
     }

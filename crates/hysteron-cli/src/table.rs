@@ -32,7 +32,10 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
                 },
                 band: band.as_ref(),
             };
-            let state = args.start.state(&model);
+            let mut state = args.start.state(&model);
+            if let Some(rest) = args.rest {
+                model.step(&mut state, rest)?;
+            }
             hysteron::simulate_table(&model, state, table, what, out, progress)
         },
     )

@@ -34,6 +34,7 @@ impl Around {
         Surroundings {
             time: self.time.as_deref(),
             load: self.load.as_deref(),
+            rest: None,
         }
     }
 }

@@ -132,6 +132,7 @@ impl BatchModel {
         let around = Surroundings {
             time: time.as_deref(),
             load: load.as_deref(),
+            rest: None,
         };
         let inputs = array.as_slice()?;
         let outputs = filled(py, inputs.len(), |outputs| {

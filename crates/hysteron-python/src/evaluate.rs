@@ -134,6 +134,7 @@ pub(crate) fn evaluate<'py>(
     dict.set_item("verdict", to_python(py, &verdict)?)?;
     dict.set_item("clipped", found.clipped)?;
     dict.set_item("estimated_from", found.estimated_from)?;
+    dict.set_item("rests", &found.rests)?;
     dict.set_item("was_fitted", found.was_fitted)?;
     dict.set_item("seen_for_band", found.seen_for_band)?;
     let band = match &found.band {

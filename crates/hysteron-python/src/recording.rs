@@ -83,6 +83,7 @@ impl Recording {
             },
             source: None,
             undone: None,
+            rest: None,
         };
         recording.check().raise()?;
         Ok(recording.into())

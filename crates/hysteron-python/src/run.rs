@@ -38,7 +38,10 @@ impl Model {
     /// start : {'fitted', 'off', 'on'}
     ///     State of the operators before the first sample. 'fitted': where the model starts, which
     ///     is `fitted_start`, and every operator off where there is none. All stages are at rest
-    ///     with the first sample.
+    ///     with the first sample, or with `rest`.
+    /// rest : float, optional
+    ///     Input long before the first sample, at which all was at rest: a wire that was warm, say.
+    ///     By default that of the first sample. `evaluate` finds it (`rests`).
     ///
     /// Returns
     /// -------
@@ -62,7 +65,7 @@ impl Model {
     /// array([4., 7., 5.])
     /// >>> model.simulate([0.5], start='on')
     /// array([5.])
-    #[pyo3(signature = (input, *, time=None, load=None, start="fitted"))]
+    #[pyo3(signature = (input, *, time=None, load=None, start="fitted", rest=None))]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
@@ -70,8 +73,12 @@ impl Model {
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
         start: &str,
+        rest: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let state = self.start(choice("start", start, &BEGINS)?);
+        if let Some(rest) = rest {
+            state.step(py, rest, None, None)?;
+        }
         if self.inner.delay().is_none() {
             return state.run(py, input, time, load);
         }

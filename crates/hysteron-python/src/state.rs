@@ -92,7 +92,7 @@ impl State {
     /// >>> state.step(0.5)
     /// 4.0
     #[pyo3(signature = (input, *, dt=None, load=None))]
-    fn step(
+    pub(crate) fn step(
         &self,
         py: Python<'_>,
         input: f64,

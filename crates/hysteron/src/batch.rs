@@ -134,7 +134,7 @@ impl BatchModel {
     /// let mut heated = plain.clone();
     /// heated.thermal = Some(FirstOrder { gain: 2.0, ..FirstOrder::default() });
     /// let mut batch: BatchModel = [plain, heated].into_iter().collect();
-    /// let around = Surroundings { time: Some(&[0.0, 50.0]), load: None };
+    /// let around = Surroundings { time: Some(&[0.0, 50.0]), load: None, rest: None };
     /// let mut outputs = [0.0; 4];
     /// batch.run_in(&[0.0, 1.0, 0.0, 1.0], around, &mut outputs)?;
     /// assert_eq!(outputs, [0.0, 1.0, 0.0, 3.0]); // the body is at twice the drive
@@ -234,6 +234,7 @@ impl BatchModel {
         let surroundings = Surroundings {
             time: time.as_ref().map(|time| &time[..]),
             load: loads,
+            rest: None,
         };
         self.run_in(inputs, surroundings, outputs)
     }
@@ -285,7 +286,11 @@ struct Job<'a> {
 impl Job<'_> {
     fn run(&mut self, state: &mut State, time: Option<&[f64]>) -> Result<ClippedCount> {
         let load = self.load;
-        let around = Surroundings { time, load };
+        let around = Surroundings {
+            time,
+            load,
+            rest: None,
+        };
         let run = self.model.run_in(state, self.input, around, self.output);
         run.map_err(|error| error.in_lane(self.number))
     }

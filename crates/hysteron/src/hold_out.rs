@@ -4,6 +4,7 @@ use crate::advice::Advice;
 use crate::error::{Error, Result};
 use crate::identify::Fit;
 use crate::identify::kept::tell_errors;
+use crate::identify::with_rest;
 use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Recording, Split, split_each, split_ends};
 use crate::remedy::{Remedy, Setting};
@@ -230,7 +231,8 @@ fn tested(model: &Model, fitted: &[Recording], recordings: &[&Recording]) -> Res
 fn simulated(model: &Model, recordings: &[&Recording]) -> Result<(Vec<f64>, Vec<f64>)> {
     let (mut measured, mut modelled) = (Vec::new(), Vec::new());
     for recording in recordings {
-        let recording = model.delay().of_recording(recording);
+        let recording = &*model.delay().of_recording(recording);
+        let recording = with_rest(model, recording)?;
         measured.extend_from_slice(&recording.output);
         modelled.extend(model.run_over(&mut model.start(), &recording)?.0);
     }

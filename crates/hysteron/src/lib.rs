@@ -88,7 +88,7 @@ pub use identify::Chosen;
 pub use identify::{
     AGAINST_INPUT, Auto, Candidates, Choice, Dynamics, FIT_OPTIONS, Fit, FitOption, FitOptions,
     LeftOut, LoadLaw, Spacing, SpacingShape, Thermal, WeightPrior, cross_validate, excitation,
-    left_out, plane_of, usual_start, way_against_input,
+    left_out, plane_of, rested_words, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, ConstantSummary, LoadSummary, ModelSummary, RecordingSummary, Series,

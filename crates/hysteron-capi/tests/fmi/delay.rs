@@ -30,6 +30,7 @@ fn inputs_act_after_the_dead_time() {
             let around = Surroundings {
                 time: Some(&time),
                 load: None,
+                rest: None,
             };
             let acting = model.acting(&input, around).unwrap();
             let (mut state, mut instance) = (model.start(), fmu.instance());

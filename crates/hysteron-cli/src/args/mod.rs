@@ -165,6 +165,9 @@ pub(crate) struct Simulate {
     /// State of the operators before the first row
     #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: RunStart,
+    /// Input long before the first row, at which all was at rest [default: that of the first row]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_finite)]
+    pub(crate) rest: Option<f64>,
     /// Where the table goes: *.parquet or *.arrow with the types of a source of the same kind,
     /// otherwise CSV [default: standard output; with --json nowhere]
     #[arg(short, long = "output", value_name = "OUT")]

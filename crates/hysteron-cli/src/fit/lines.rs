@@ -39,6 +39,7 @@ pub(super) fn to_text(
     lines.extend(outliers_line(fit, model, recordings));
     let bare = model.latent() == 0.0;
     lines.extend(model.thermal.as_ref().map(|body| thermal_line(body, bare)));
+    lines.extend(hysteron::rested_words(&fit.rests(), &model.input));
     lines.extend(model.fit.as_ref().and_then(unasked_line));
     lines.extend(latent_line(model));
     lines.extend(load_line(model));

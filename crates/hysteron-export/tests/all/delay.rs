@@ -31,6 +31,7 @@ fn compare(model: &Model, sampling: &CSampling, flags: &[&str]) {
     let around = Surroundings {
         time: sampling.dt.map(|_| &time[..]),
         load: None,
+        rest: None,
     };
     let expected = model.simulate_in(&input, around).unwrap();
     let (mut commands, mut answered) = (String::new(), String::new());

@@ -90,6 +90,7 @@ impl<'a> Source<'a> {
         let around = Surroundings {
             time: Some(&time),
             load: load.as_deref(),
+            rest: None,
         };
         let mut state = operators.start();
         let seen = model.seen(history, around);
@@ -113,6 +114,7 @@ impl<'a> Source<'a> {
         let around = Surroundings {
             time: Some(&time),
             load: None,
+            rest: None,
         };
         model
             .run_in(&mut model.off(), input, around, &mut output)

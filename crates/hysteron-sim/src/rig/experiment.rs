@@ -145,6 +145,7 @@ impl Experiment {
             origin: Origin::Simulated,
             source: None,
             undone: None,
+            rest: None,
         })
     }
 

@@ -106,6 +106,7 @@ fn followed(model: &Model) -> f64 {
     let around = Surroundings {
         time: Some(&time),
         load: None,
+        rest: None,
     };
     let inverse = model.inverse().unwrap().drive_range(0.0, 1.0).unwrap();
     let mut state = model.start();

@@ -163,6 +163,7 @@ impl CarriedRecording {
             },
             source: self.source,
             undone: self.undone,
+            rest: None,
             input: numbers(&self.input)?,
             output: numbers(&self.output)?,
         };

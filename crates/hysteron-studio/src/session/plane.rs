@@ -180,6 +180,7 @@ impl Session {
         let around = Surroundings {
             time: around.time.map(|time| &time[rows.clone()]),
             load: around.load.map(|load| &load[rows.clone()]),
+            rest: None,
         };
         model.run_in(
             &mut state,

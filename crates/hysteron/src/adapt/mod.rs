@@ -50,6 +50,7 @@ pub use unknown_load::ShiftFound;
 pub use window::Window;
 
 use crate::error::{Error, Result};
+use crate::identify::with_rests;
 use crate::model::{Model, Start};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
@@ -95,6 +96,7 @@ pub fn adapt(
     recordings.iter().try_for_each(Recording::check)?;
     recordings.iter().try_for_each(|r| model.check_units(r))?;
     let recordings = &*model.delay().of_recordings(recordings);
+    let recordings = &*with_rests(model, recordings)?;
     let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
     let mut adapted = match options.learner {
         Learner::Load => unknown_load::adapt(model, (recordings, &joined), options, progress)?,

@@ -93,6 +93,7 @@ fn joined(parts: Vec<Evaluation>, recordings: &[Recording]) -> Result<Evaluation
         forward: over_all(parts.iter().map(|part| part.forward), recordings)?,
         clipped: parts.iter().map(|part| part.clipped).sum(),
         estimated_from: parts.iter().map(|part| part.estimated_from).sum(),
+        rests: parts.iter().flat_map(|part| part.rests.clone()).collect(),
         was_fitted: parts.iter().all(|part| part.was_fitted),
         seen_for_band: parts.iter().any(|part| part.seen_for_band),
         band: band(&parts),

@@ -1,7 +1,7 @@
 //! Forward and inverse tests of a model on one recording.
 
 use crate::error::Result;
-use crate::identify::{find_rest, find_start};
+use crate::identify::{find_rest, find_start, with_rest};
 use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State, Surroundings};
 use crate::recording::Recording;
 use crate::series::Errors;
@@ -32,6 +32,9 @@ pub struct Evaluation {
     /// For a start that was unknown: the number of samples at the beginning of each recording from
     /// which it was estimated, all together.
     pub estimated_from: Option<usize>,
+    /// Of each recording the drive at which the body was at rest before it, found from its
+    /// beginning; `None` for that of the first sample, and for a model without a body.
+    pub rests: Vec<Option<f64>>,
     /// Whether this is a recording that the model was fitted to. Then the errors say how well the
     /// model fits, not how well it predicts.
     pub was_fitted: bool,
@@ -82,6 +85,7 @@ pub(super) fn keeping(
     recording.check()?;
     model.check_units(recording)?;
     let recording = &*model.delay().of_recording(recording);
+    let recording = &*with_rest(model, recording)?;
     let (begin, estimated_from) = begin(model, recording, start)?;
     let (output_model, clipped) = model.run_over(&mut begin.clone(), recording)?;
     let forward = compare(&recording.output, &output_model);
@@ -105,6 +109,7 @@ pub(super) fn keeping(
         forward,
         clipped: clipped.low + clipped.high,
         estimated_from,
+        rests: vec![recording.rest],
         inverse,
     })
 }

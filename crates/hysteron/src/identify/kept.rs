@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::changed::on_grid;
 use crate::identify::history::{self, find_start};
 use crate::identify::options::FitOptions;
-use crate::identify::rest::after;
+use crate::identify::rest::{after, with_rests};
 use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::recording::{Recording, one_speed};
 use crate::series::{Errors, different_branches};
@@ -92,7 +92,7 @@ fn at_first(model: Model, recordings: &[Recording]) -> Result<Model> {
 /// The sum of the squared errors from the start that the model keeps.
 fn squares(model: &Model, recordings: &[Recording]) -> Result<f64> {
     let mut sum = 0.0;
-    for recording in recordings {
+    for recording in &*with_rests(model, recordings)? {
         sum += history::squares(model, model.start(), recording)?;
     }
     Ok(sum)
@@ -131,6 +131,21 @@ pub(super) fn tell_recorded(model: &mut Model, recordings: &[Recording]) {
     }
 }
 
+/// The entry of a fit's record with the drives at which the body was at rest before each recording;
+/// null for that of its first sample.
+const RESTS: &str = "rests";
+
+impl FitSummary {
+    /// The drives at which the body was at rest before each recording that was fitted
+    /// ([`crate::Evaluation::rests`]); empty where each was that of the first sample.
+    #[must_use]
+    pub fn rests(&self) -> Vec<Option<f64>> {
+        let rests = self.other.get(RESTS).and_then(|rests| rests.as_array());
+        let rests = rests.map(|rests| rests.iter().map(serde_json::Value::as_f64).collect());
+        rests.unwrap_or_default()
+    }
+}
+
 /// Writes the errors from the start that the model keeps into the record of its fit, over those of
 /// all samples that are `fitted`. Outliers do not count.
 ///
@@ -144,7 +159,9 @@ pub(crate) fn tell_errors(
     let outliers = model.fit.iter().flat_map(|fit| &fit.outliers);
     let left_out: HashSet<(usize, usize)> = outliers.map(|o| (o.recording, o.sample)).collect();
     let (mut measured, mut modelled, mut before) = (Vec::new(), Vec::new(), 0);
-    for (n, recording) in recordings.iter().enumerate() {
+    let rested = with_rests(model, recordings)?;
+    let rests: Vec<Option<f64>> = rested.iter().map(|one| one.rest).collect();
+    for (n, recording) in rested.iter().enumerate() {
         let (output, _) = model.run_over(&mut model.start(), recording)?;
         let counts = |sample| fitted(before + sample) && !left_out.contains(&(n, sample));
         for (sample, h) in output.into_iter().enumerate().filter(|(n, _)| counts(*n)) {
@@ -158,6 +175,9 @@ pub(crate) fn tell_errors(
         fit.rmse = errors.rmse;
         fit.max_abs = errors.max_abs;
         fit.nrmse_percent = errors.nrmse_percent.unwrap_or_default();
+        if rests.iter().any(Option::is_some) {
+            fit.other.insert(RESTS.into(), json!(rests));
+        }
     }
     Ok(())
 }

@@ -99,6 +99,11 @@ impl FirstOrder {
     /// # Errors
     /// As [`FirstOrder::step`], and for series of different lengths.
     pub fn respond(&self, time: &[f64], drive: &[f64]) -> Result<Vec<f64>> {
+        self.respond_from(None, time, drive)
+    }
+
+    /// As [`FirstOrder::respond`], at rest with another drive at first.
+    fn respond_from(&self, rest: Option<f64>, time: &[f64], drive: &[f64]) -> Result<Vec<f64>> {
         if time.len() != drive.len() {
             return Err(Error::Thermal(format!(
                 "{} times, but {} samples of the drive",
@@ -109,7 +114,7 @@ impl FirstOrder {
         let (Some(&first), Some(&u)) = (time.first(), drive.first()) else {
             return Ok(Vec::new());
         };
-        let (mut temperature, mut last) = (self.rest(u), first);
+        let (mut temperature, mut last) = (self.rest(rest.unwrap_or(u)), first);
         let samples = time.iter().zip(drive);
         samples
             .map(|(&t, &u)| {
@@ -119,14 +124,15 @@ impl FirstOrder {
             .collect()
     }
 
-    /// The recording with the body's temperature as its input.
+    /// The recording with the body's temperature as its input. The body starts at rest with the
+    /// first drive, or with [`Recording::rest`].
     ///
     /// # Errors
     /// [`Error::Thermal`] for a recording without time, and as [`FirstOrder::respond`].
     pub fn behind(&self, recording: &Recording) -> Result<Recording> {
         let time = recording.time.as_ref().ok_or_else(needs_time)?;
         Ok(Recording {
-            input: self.respond(time, &recording.input)?,
+            input: self.respond_from(recording.rest, time, &recording.input)?,
             ..recording.clone()
         })
     }

@@ -8,15 +8,18 @@ use hysteron_core::Error as CoreError;
 use hysteron_core::{Clipped, ClippedCount};
 use std::borrow::Cow;
 
-/// The series that accompany an input. Each is as long as the input. The time may have one number
-/// more at its beginning: the time of the sample before the first one, to go on from a state that
-/// has moved.
+/// What accompanies an input. Each series is as long as the input. The time may have one number more
+/// at its beginning: the time of the sample before the first one, to go on from a state that has
+/// moved.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Surroundings<'a> {
     /// Time in seconds; needed by a model that depends on it.
     pub time: Option<&'a [f64]>,
     /// The load; needed by a model that depends on one.
     pub load: Option<&'a [f64]>,
+    /// The input long before the first sample: all stages were at rest with it. `None` if it was
+    /// that of the first sample, and to go on from a state that has moved.
+    pub rest: Option<f64>,
 }
 
 impl Model {
@@ -29,7 +32,7 @@ impl Model {
     /// let plane = Plane::new(1.0, 2.0, 2)?;
     /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
     /// model.thermal = Some(FirstOrder { gain: 2.0, ..FirstOrder::default() });
-    /// let surroundings = Surroundings { time: Some(&[0.0, 1.0, 50.0]), load: None };
+    /// let surroundings = Surroundings { time: Some(&[0.0, 1.0, 50.0]), load: None, rest: None };
     /// let output = model.simulate_in(&[0.0, 0.0, 1.0], surroundings)?;
     /// assert_eq!(output, [0.0, 0.0, 3.0]); // held for 49 s
     /// # Ok::<(), hysteron::Error>(())
@@ -121,6 +124,7 @@ impl Model {
         surroundings: Surroundings<'_>,
         output: &mut [f64],
     ) -> Result<ClippedCount> {
+        self.rest_at(state, surroundings)?;
         if self.is_plain() && surroundings.load.is_none() {
             return self.operators().run(&mut state.operators, input, output);
         }
@@ -181,6 +185,19 @@ impl Model {
         }
     }
 
+    /// Moves `state` to where the series begin, at rest with the input before them, if there was
+    /// another.
+    fn rest_at(&self, state: &mut State, surroundings: Surroundings<'_>) -> Result<()> {
+        let Some(input) = surroundings.rest else {
+            return Ok(());
+        };
+        state.forget_stages();
+        let first = surroundings.load.and_then(|load| load.first());
+        let (dt, load) = (None, first.copied());
+        self.step(state, Sample { input, dt, load })?;
+        Ok(())
+    }
+
     /// What the state shows after each sample, from the model's start on.
     fn along(
         &self,
@@ -189,6 +206,7 @@ impl Model {
         shown: impl Fn(&State) -> f64,
     ) -> Result<Vec<f64>> {
         let mut state = self.start();
+        self.rest_at(&mut state, surroundings)?;
         let samples = surroundings.samples(self, input)?.map(|(index, sample)| {
             self.step(&mut state, sample)
                 .map_err(|error| at_index(error, index))?;
@@ -205,6 +223,7 @@ impl<'a> Surroundings<'a> {
         Self {
             time: recording.time.as_deref().filter(|_| model.reads_time()),
             load: recording.load.as_deref().filter(|_| model.load.is_some()),
+            rest: recording.rest,
         }
     }
 
@@ -274,6 +293,7 @@ mod tests {
         let around = Surroundings {
             time: None,
             load: Some(&load),
+            rest: None,
         };
         let found = model.simulate_in(&input, around).unwrap();
         let sample = crate::model::Sample {

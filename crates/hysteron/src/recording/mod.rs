@@ -178,6 +178,8 @@ pub struct Recording {
     pub source: Option<Source>,
     /// The lag of the input's sensor that was undone in it.
     pub undone: Option<UndoneLag>,
+    /// The input long before the first sample, if it was another one: see [`crate::Surroundings`].
+    pub rest: Option<f64>,
 }
 
 /// A lag of the input's sensor that was undone ([`crate::prepare()`]).
@@ -213,6 +215,7 @@ impl Recording {
             origin: Origin::Measured,
             source: None,
             undone: None,
+            rest: None,
         };
         recording.check()?;
         Ok(recording)

@@ -189,7 +189,11 @@ impl Recording {
 
     /// Only these samples.
     pub(crate) fn part(&self, samples: Range<usize>) -> Self {
-        self.picked(|series| series[samples.clone()].to_vec())
+        let rest = self.rest.filter(|_| samples.start == 0);
+        Self {
+            rest,
+            ..self.picked(|series| series[samples.clone()].to_vec())
+        }
     }
 
     /// Every series as it is picked.
@@ -205,6 +209,7 @@ impl Recording {
             origin: self.origin,
             source: self.source.clone(),
             undone: self.undone,
+            rest: self.rest,
         }
     }
 

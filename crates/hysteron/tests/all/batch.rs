@@ -102,6 +102,7 @@ impl Series {
         Surroundings {
             time: Some(&self.time),
             load: self.loads.as_deref(),
+            rest: None,
         }
     }
 }
@@ -249,6 +250,7 @@ fn an_error_names_its_lane_and_no_state_has_moved() {
         let around = Surroundings {
             time: Some(&time),
             load: Some(&loads),
+            rest: None,
         };
         let error = batch.run_in(&inputs, around, &mut outputs).unwrap_err();
         let (Error::Lane { lane, error }, _) = error.parts() else {
@@ -279,6 +281,7 @@ fn what_does_not_fit_is_refused() {
     let around = |load| Surroundings {
         time: None,
         load: Some(load),
+        rest: None,
     };
     let refused = [
         batch.run(&[0.0; 7], &mut [0.0; 7]),

@@ -186,6 +186,7 @@ fn the_error_of_a_fit_with_a_body_is_that_of_its_model() {
     let around = hysteron::Surroundings {
         time: Some(&time),
         load: None,
+        rest: None,
     };
     let output = model.simulate_in(&input, around).unwrap();
     let mut recording = Recording::new(input, output).unwrap();

@@ -197,6 +197,7 @@ fn a_ring_that_is_excited_is_found_and_its_inverse_follows_a_path() {
     let around = Surroundings {
         time: Some(&time),
         load: None,
+        rest: None,
     };
     let missed = |model: &Model| {
         let mut state = model.start();

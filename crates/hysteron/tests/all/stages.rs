@@ -104,6 +104,7 @@ fn series_and_single_steps_agree() {
     let around = Surroundings {
         time: Some(&time),
         load: Some(&load),
+        rest: None,
     };
     let all = model.simulate_in(&drive, around).unwrap();
     let mut state = model.start();
@@ -126,6 +127,7 @@ fn the_inverse_is_met_by_the_model_where_it_says_so() {
     let around = Surroundings {
         time: Some(&time),
         load: Some(&load),
+        rest: None,
     };
     let inverse = model.inverse().unwrap();
     let found = inverse
@@ -162,10 +164,12 @@ fn a_constant_load_is_a_model_of_its_own() {
         let with = Surroundings {
             time: Some(&time),
             load: Some(&loads),
+            rest: None,
         };
         let without = Surroundings {
             time: Some(&time),
             load: None,
+            rest: None,
         };
         let left = model.simulate_in(&drive, with).unwrap();
         let right = at.simulate_in(&drive, without).unwrap();
@@ -370,6 +374,7 @@ fn recorded(plant: &Model, stress: f64) -> Recording {
     let around = Surroundings {
         time: None,
         load: Some(&load),
+        rest: None,
     };
     let output = plant.simulate_in(&input, around).unwrap();
     let mut recording = Recording::new(input, output).unwrap();
@@ -503,6 +508,7 @@ fn creeping() -> Recording {
     let around = Surroundings {
         time: Some(&time),
         load: None,
+        rest: None,
     };
     let output = model.simulate_in(&input, around).unwrap();
     let mut recording = Recording::new(input, output).unwrap();
@@ -763,6 +769,7 @@ fn a_lag_of_any_length_is_found() {
         let around = Surroundings {
             time: Some(&time),
             load: None,
+            rest: None,
         };
         let output = plant.simulate_in(&input, around).unwrap();
         let mut recording = Recording::new(input.clone(), output).unwrap();

@@ -42,6 +42,7 @@ fn recording(plant: &Model, count: usize) -> Recording {
     let around = Surroundings {
         time: plant.is_timed().then_some(&time),
         load: None,
+        rest: None,
     };
     let output = plant.simulate_in(&drive, around).unwrap();
     let mut recording = Recording::new(drive, output).unwrap();

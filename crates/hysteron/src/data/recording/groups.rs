@@ -180,6 +180,7 @@ impl Groups {
             origin: Origin::Measured,
             source: None,
             undone: None,
+            rest: None,
         };
         recording.check()?;
         Ok((recording, notes.collect()))

@@ -296,6 +296,7 @@ fn read_parts(
             load_quantity: load_quantity.clone(),
             origin,
             undone: None,
+            rest: None,
             source: source.clone().map(|source| Source {
                 places: (!plain).then(|| samples.places.part(begin..end)),
                 ..source

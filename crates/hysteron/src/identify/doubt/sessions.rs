@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::identify::doubt::calibrate::{missing, quantile};
 use crate::identify::history::find_start;
+use crate::identify::rest::with_rests;
 use crate::model::{INTERVAL, Model, SeenFile, Surroundings};
 use crate::recording::Recording;
 use crate::series::{branch_spans, usual_tolerance};
@@ -19,7 +20,7 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
     };
     let noise = confidence(model).map_or(0.0, |found| found.noise);
     let (mut values, mut units) = (Vec::new(), 0);
-    for repeat in repeats {
+    for repeat in &*with_rests(model, repeats)? {
         let (start, _) = find_start(model, repeat)?;
         let begin = model.restore(&start.turning_points, start.input)?;
         let around = Surroundings::from_recording(model, repeat);

@@ -20,10 +20,10 @@ const SEARCHED: usize = 2000;
 const SETTLED: f64 = 4.0;
 
 /// Levels at most of the plane on which a first look is taken.
-const LOOK: usize = 20;
+pub(super) const LOOK: usize = 20;
 
 /// Ratio of neighbouring time constants on the first grid.
-const GRID: f64 = 2.0;
+pub(super) const GRID: f64 = 2.0;
 
 /// A time constant is resolved if half or twice its value fits worse by this ratio of RMSE,
 /// whatever the other time constant is. Smaller ratios occur by chance, because the weights can
@@ -94,7 +94,7 @@ pub(in crate::identify) fn may_heat(
     let search = Search::new(recordings, &options, progress)?;
     let thinned: Vec<Recording> = recordings.iter().map(|r| search.thinned(r)).collect();
     let cold = fit_weights(&thinned, &search.options, Progress::NONE)?;
-    let (_, warm) = search.best_of_grid(|[tau]: &[f64; 1]| [*tau; 2])?;
+    let (warm, _) = search.look()?;
     Ok(cold.fit.is_some_and(|cold| warm <= most * cold.rmse))
 }
 
@@ -140,6 +140,15 @@ impl<'a> Search<'a> {
             bounds: (shortest.ln(), (longest / SETTLED).max(shortest).ln()),
             stride: samples.div_ceil(SEARCHED),
         })
+    }
+
+    /// The same search in recordings that differ in their rests.
+    pub(super) fn of<'r>(&'r self, recordings: &'r [Recording]) -> Search<'r> {
+        Search {
+            recordings,
+            options: self.options.clone(),
+            ..*self
+        }
     }
 
     /// Whether this logarithm of a time constant is one that is searched.
@@ -194,7 +203,7 @@ impl<'a> Search<'a> {
     }
 
     /// The best point of a grid, and its RMSE.
-    fn best_of_grid<const N: usize>(
+    pub(super) fn best_of_grid<const N: usize>(
         &self,
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],
     ) -> Result<([f64; N], f64)> {
@@ -213,7 +222,7 @@ impl<'a> Search<'a> {
     }
 
     /// The RMSE at a point; endless outside what is searched.
-    fn rmse_inside<const N: usize>(
+    pub(super) fn rmse_inside<const N: usize>(
         &self,
         point: &[f64; N],
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],

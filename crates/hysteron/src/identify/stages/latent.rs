@@ -76,7 +76,8 @@ impl Heated {
     fn respond(&self, recording: &Recording) -> Result<Vec<f64>> {
         let time = recording.time.as_ref().ok_or_else(needs_time)?;
         let output = smoothed(&recording.output);
-        let mut temperature = recording.input.first().map_or(0.0, |u| self.body.rest(*u));
+        let first = recording.rest.or(recording.input.first().copied());
+        let mut temperature = self.body.rest(first.unwrap_or_default());
         let samples = recording.input.iter().enumerate().map(|(n, &drive)| {
             let before = n.saturating_sub(1);
             let unbound = self.body.step(temperature, time[n] - time[before], drive)?;
@@ -172,7 +173,7 @@ fn least<const N: usize>(
 
 impl Search<'_> {
     /// The model behind a body; with a `half`, of the other half alone.
-    fn model(&self, heated: Heated, half: Option<usize>) -> Result<Model> {
+    pub(super) fn model(&self, heated: Heated, half: Option<usize>) -> Result<Model> {
         self.progress.tell("heat that is bound", f64::NAN)?;
         let behind: Vec<Recording> = heated.behind(self.recordings)?;
         let behind: Vec<Recording> = behind.iter().map(|r| self.thinned(r)).collect();

@@ -19,7 +19,9 @@ mod ring;
 mod search;
 mod spacing;
 mod undone;
+mod warm;
 
+use body::Search;
 pub(super) use body::may_heat;
 pub(crate) use lag::with_right_input;
 use latent::Heated;
@@ -75,8 +77,11 @@ pub(crate) fn fit(
     let mut notes = std::collections::BTreeMap::new();
     let mut seen: Cow<'_, [Recording]> = Cow::Borrowed(recordings);
     if asked.thermal != Thermal::None {
-        let (first_order, told_apart) = body::find(recordings, options, progress)?;
+        let rested = warm::rested(recordings, options, progress)?;
+        let (first_order, told_apart) = body::find(&rested, options, progress)?;
         let mut heated = Heated::unbound(first_order);
+        let rested = Search::new(&rested, options, progress)?.rested(heated)?;
+        let recordings = &rested[..];
         let mut note = json!({"told_apart": told_apart});
         if asked.thermal == Thermal::Auto
             && recordings.iter().all(|recording| recording.load.is_none())
@@ -86,7 +91,8 @@ pub(crate) fn fit(
             heated = binding.heated;
             note["latent"] = json!(binding.report);
         }
-        seen = Cow::Owned(heated.behind(recordings)?);
+        let rested = Search::new(&rested, options, progress)?.rested(heated)?;
+        seen = Cow::Owned(heated.behind(&rested)?);
         found.thermal = Some(heated.body);
         found.latent = heated.per_output.abs();
         let ranges = recordings.iter().map(|recording| range(&recording.input));
