@@ -12,14 +12,51 @@ does. Two results are equal if all their fields are; NaN equals NaN.
 """
 
 import dataclasses
-import types
-import typing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, TypedDict
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+
+from . import _measured
+from ._measured import (
+    Candidate,
+    Compared,
+    ConfidenceSummary,
+    ConstantSummary,
+    CreepTerm,
+    CutOff,
+    DeadBand,
+    Drift,
+    Errors,
+    HeldOut,
+    Judged,
+    LoadCurves,
+    LoadSummary,
+    LowPass,
+    ModelSummary,
+    OutcomeCounts,
+    Outlier,
+    RateDependence,
+    Ratio,
+    Repairs,
+    RivalErrors,
+    RivalScore,
+    Sampling,
+    SeenFile,
+    SensorLag,
+    SeriesSummary,
+    Smooth,
+    Smoothed,
+    Spikes,
+    StageSummary,
+    ThermalBody,
+    Uncertain,
+    Validation,
+    Worst,
+)
+from ._result import _Array, _make, _MaybeNone, _Result
 
 __all__ = [
     "AdaptedComparison",
@@ -83,273 +120,8 @@ __all__ = [
     "Worst",
 ]
 
-_Array = NDArray[np.float64]
-#: For type checkers what may be None, but is not where it is used as a rule: they do not ask for a check.
-_MaybeNone: TypeAlias = Any
-
-
-class _Result:
-    """What the dataclasses share."""
-
-    def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        return all(_same(getattr(self, name), getattr(other, name)) for name in _names(self))
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        fields = (f"{name}={_short(getattr(self, name))}" for name in _names(self))
-        return f"{type(self).__name__}({', '.join(fields)})"
-
-    def to_dict(self) -> dict[str, Any]:
-        """The fields as a dictionary, nested ones too."""
-        return dataclasses.asdict(self)  # type: ignore[call-overload, no-any-return]
-
-
-def _names(result: _Result) -> list[str]:
-    return [field.name for field in dataclasses.fields(result)]  # type: ignore[arg-type]
-
-
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        numbers = getattr(one, "dtype", None) == np.float64
-        return bool(np.array_equal(one, other, equal_nan=numbers))
-    return one is other or bool(one == other) or (one != one and other != other)
-
-
-def _short(value: Any) -> str:
-    if isinstance(value, np.ndarray) and value.size > 6:
-        return f"<array of {value.dtype}, shape {value.shape}>"
-    return repr(value)
-
-
-_HINTS: dict[type, dict[str, Any]] = {}
-
-
-def _hints(cls: type) -> dict[str, Any]:
-    """The types of the fields. They are worked out once: that takes longer than the rest."""
-    if cls not in _HINTS:
-        _HINTS[cls] = typing.get_type_hints(cls)
-    return _HINTS[cls]
-
-
-def _make(cls: Any, data: dict[str, Any]) -> Any:
-    """A dataclass from plain data. Entries that it does not know go to its field `other`."""
-    hints = _hints(cls)
-    fields = {name: _convert(hints[name], value) for name, value in data.items() if name in hints}
-    unknown = {name: value for name, value in data.items() if name not in hints}
-    if unknown:
-        fields["other"] = unknown  # a TypeError where there is no such field
-    return cls(**fields)
-
-
-def _convert(hint: Any, value: Any) -> Any:
-    """`value` with lists made tuples and dictionaries made dataclasses where `hint` says so."""
-    origin, arguments = typing.get_origin(hint), typing.get_args(hint)
-    if value is None:
-        return None
-    if origin in (types.UnionType, typing.Union):
-        return _convert(next(part for part in arguments if part is not type(None)), value)
-    if origin is tuple:
-        variable = arguments[-1] is Ellipsis
-        parts = [arguments[0]] * len(value) if variable else arguments
-        return tuple(_convert(part, entry) for part, entry in zip(parts, value, strict=True))
-    if dataclasses.is_dataclass(hint):
-        return _make(hint, value) if isinstance(value, dict) else value
-    return value
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Errors(_Result):
-    """How far a modelled series is from a measured one.
-
-    Attributes
-    ----------
-    rmse : float
-        Root mean squared difference, in the unit of the series.
-    max_abs : float
-        Largest absolute difference, in the unit of the series.
-    nrmse_percent : float or None
-        `rmse` in percent of the measured range of the whole series; None where that range is zero.
-    samples : int
-        Number of samples compared.
-    """
-
-    rmse: float
-    max_abs: float
-    nrmse_percent: float | _MaybeNone
-    samples: int
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Smooth(_Result):
-    """Strengths of the smoothness of the weights across the plane.
-
-    Attributes
-    ----------
-    along : float
-        Along the diagonal: operators of the same width have similar weights.
-    across : float
-        In both directions.
-    """
-
-    along: float
-    across: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Candidate(_Result):
-    """How good one number of levels with one smoothness is.
-
-    Attributes
-    ----------
-    levels : int
-        Number of levels.
-    smooth : Smooth
-        Strengths of the smoothness.
-    rmse : float
-        Root mean squared error in the output's unit: over all samples, each left out once. Where
-        the evidence chose, over the samples fitted.
-    log_evidence : float or None
-        Logarithm of the evidence, up to a constant.
-    """
-
-    levels: int
-    smooth: Smooth
-    rmse: float
-    log_evidence: float | None = None
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class RivalScore(_Result):
-    """The error of a simple predictor on what was left out.
-
-    Attributes
-    ----------
-    name : str
-        Such as 'straight line'.
-    nrmse_percent : float
-        Root mean squared error in percent of the measured range.
-    """
-
-    name: str
-    nrmse_percent: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Outlier(_Result):
-    """A reading that stands out from its neighbours, and was left out of the fit.
-
-    Attributes
-    ----------
-    recording : int
-        Index of the recording.
-    sample : int
-        Index of the sample.
-    by : float
-        How far the output is from where its neighbours say, in its unit.
-    """
-
-    recording: int
-    sample: int
-    by: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Validation(_Result):
-    """How levels and smoothness were chosen.
-
-    Attributes
-    ----------
-    criterion : {'left_out', 'evidence'}
-        The error on branches left out, or the evidence of the weights' prior where there are few
-        branches.
-    folds : int
-        Number of groups of branches, each left out once.
-    whole_branches : bool
-        Whether whole branches were left out. With fewer than six branches, parts of them are.
-    rmse : float
-        Error of the chosen candidate on what was left out, in the output's unit.
-    nrmse_percent : float
-        The same in percent of the measured range.
-    scores : tuple of Candidate
-        All candidates.
-    rivals : tuple of RivalScore
-        Simple predictors on the same samples left out.
-    """
-
-    criterion: Literal["left_out", "evidence"]
-    folds: int
-    whole_branches: bool
-    rmse: float
-    nrmse_percent: float
-    scores: tuple[Candidate, ...]
-    rivals: tuple[RivalScore, ...] = ()
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SeenFile(_Result):
-    """A file that a fit has seen.
-
-    Attributes
-    ----------
-    file : str
-        Its path.
-    sha256 : str
-        Checksum of its bytes.
-    """
-
-    file: str
-    sha256: str
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class RivalErrors(_Result):
-    """The errors of a simple predictor, fitted to the same samples as the model.
-
-    Attributes
-    ----------
-    name : str
-        Such as 'straight line'.
-    rmse : float
-        As in `Errors`, and so are the others.
-    max_abs : float
-        Largest absolute difference, in the output's unit.
-    nrmse_percent : float or None
-        `rmse` in percent of the measured range.
-    samples : int
-        Number of samples compared.
-    """
-
-    name: str
-    rmse: float
-    max_abs: float
-    nrmse_percent: float | _MaybeNone
-    samples: int
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class HeldOut(_Result):
-    """The errors over samples that took no part in the fit: `FitSummary.hold_out`.
-
-    Attributes
-    ----------
-    model : Errors
-        Of the model.
-    rivals : tuple of RivalErrors
-        Of a straight line and of interpolation.
-    without_dynamics : bool
-        Whether no dead time, ring, lag or body was looked for, because more than the end of
-        a recording was held out.
-    at_end : bool
-        Whether a share of the branches was held out at the end, and not spread over each recording.
-    """
-
-    model: Errors
-    rivals: tuple[RivalErrors, ...]
-    without_dynamics: bool = False
-    at_end: bool = False
+for _name in _measured.__all__:
+    getattr(_measured, _name).__module__ = __name__
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -475,238 +247,6 @@ class Confidence(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ThermalBody(_Result):
-    """A thermal body of first order in front of the operators: `Model.thermal`.
-
-    Attributes
-    ----------
-    gain : float
-        Rise of the temperature at rest per unit of the drive.
-    tau_heating : float
-        Time constant of heating, s.
-    tau_cooling : float
-        Time constant of cooling, s.
-    ambient : float
-        Temperature at rest without a drive. It is 0, with a gain of 1, where no temperature was
-        measured: temperatures are then in units of the drive that holds them.
-    """
-
-    gain: float
-    tau_heating: float
-    tau_cooling: float
-    ambient: float = 0.0
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class CreepTerm(_Result):
-    """A first-order lag of the operators' sum, which is added to it: `Model.creep`.
-
-    Attributes
-    ----------
-    coefficient : float
-        Share of the sum that creeps.
-    tau : float
-        Time constant, s.
-    """
-
-    coefficient: float
-    tau: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LoadCurves(_Result):
-    """What a load does, straight between the loads given: `Model.load_curves`.
-
-    ``x = scale · input − shift`` is what the operators see, ``output = offset of the model + offset
-    ± gain · Σ μ γ``. A curve without numbers has no effect.
-
-    Attributes
-    ----------
-    loads : ndarray, shape (m,)
-        The loads, ascending. Beyond them the curves stay as at the nearest load.
-    shifts : ndarray, shape (m,) or (0,)
-        Shift of the axis, in the input's unit.
-    scales : ndarray, shape (m,) or (0,)
-        Scale of the axis.
-    gains : ndarray, shape (m,) or (0,)
-        Gain of the operators' sum.
-    offsets : ndarray, shape (m,) or (0,)
-        Offset, in the output's unit.
-    """
-
-    loads: _Array
-    shifts: _Array
-    scales: _Array
-    gains: _Array
-    offsets: _Array
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LoadSummary(_Result):
-    """The load that the weights of a model depend on.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    unit : str or None
-        Its unit.
-    min : float
-        Smallest load of the fit.
-    max : float
-        Largest load of the fit.
-    order : int
-        Order of the weights as a function of the load.
-    """
-
-    name: str
-    unit: str | None
-    min: float
-    max: float
-    order: int
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Uncertain(_Result):
-    """A weight with a large standard error.
-
-    Attributes
-    ----------
-    i : int
-        Level of α, from 1.
-    j : int
-        Level of β, from `i`.
-    weight : float
-        The weight ``μ_ij``, in the output's unit.
-    standard_error : float
-        Its standard error, in the output's unit.
-    """
-
-    i: int
-    j: int
-    weight: float
-    standard_error: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class ConfidenceSummary(_Result):
-    """`Confidence` in short.
-
-    Attributes
-    ----------
-    excitation : dict of int
-        Number of operators in each class: 'never', 'once', 'ambiguous', 'determined'.
-    rank : int
-        Number of combinations of weights that the data determine.
-    unknowns : int
-        Number of weights, and of initial states where these are unknown.
-    condition : float or None
-        Ratio of the best to the worst determined combination; None where it is infinite.
-    noise : float
-        Standard deviation of the residuals, in the output's unit.
-    replicates : int
-        Replicates of the bootstrap.
-    offset_error : float
-        Standard error of the offset, in the output's unit.
-    least_certain : tuple of Uncertain
-        The weights with the largest standard errors, the largest first.
-    """
-
-    excitation: dict[str, int]
-    rank: int
-    unknowns: int
-    condition: float | None
-    noise: float
-    replicates: int
-    offset_error: float
-    least_certain: tuple[Uncertain, ...]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class ConstantSummary(_Result):
-    """A constant of a stage.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    unit : str or None
-        The unit of its numbers; None for none, and where the model does not know it.
-    numbers : tuple of float
-        Its numbers.
-    """
-
-    name: str
-    unit: str | None
-    numbers: tuple[float, ...]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class StageSummary(_Result):
-    """A stage that a model has.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    about : str
-        What it does, in one sentence.
-    constants : tuple of ConstantSummary
-        Its constants.
-    """
-
-    name: str
-    about: str
-    constants: tuple[ConstantSummary, ...]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class ModelSummary(_Result):
-    """A model in short: `Model.summary`.
-
-    Attributes
-    ----------
-    levels : int
-        Levels of the plane.
-    plane : tuple of float
-        Lowest and highest level, in the unit of the operators' input.
-    steps : tuple of float
-        Smallest and largest distance between neighbouring levels, in that unit.
-    operators : int
-        Number of operators.
-    weights_not_zero : int
-        Number of weights that are not zero.
-    weights_below_zero : int
-        Number of weights below zero. With any, there is no inverse.
-    output : tuple of float
-        Outputs with every operator off and with every operator on.
-    widest_loop : float
-        Largest difference between the falling and the rising major branch, in the output's unit.
-    widest_loop_at : float
-        The input there.
-    load : LoadSummary or None
-        The load that the weights depend on.
-    stages : tuple of StageSummary
-        Its stages, in the order of the signal.
-    confidence : ConfidenceSummary or None
-        None for a model that was fitted without bootstrap.
-    """
-
-    levels: int
-    plane: tuple[float, float]
-    steps: tuple[float, float]
-    operators: int
-    weights_not_zero: int
-    weights_below_zero: int
-    output: tuple[float, float]
-    widest_loop: float
-    widest_loop_at: float
-    load: LoadSummary | None
-    stages: tuple[StageSummary, ...]
-    confidence: ConfidenceSummary | None
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class BandTest(_Result):
     """The 95 % band over a recording.
 
@@ -770,37 +310,6 @@ class InverseTest(_Result):
     moving: NDArray[np.bool_]
     hold: InverseRun
     anticipate: InverseRun
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Worst(_Result):
-    """The sample where a model errs most.
-
-    Attributes
-    ----------
-    file : str or None
-        The file of a recording that was held out; None in what was fitted or evaluated.
-    recording : int
-        Number of its recording, from 0.
-    sample : int
-        Its number there, from 0.
-    time : float or None
-        In seconds; None without time.
-    input : float
-        The input.
-    measured : float
-        The output measured.
-    modelled : float
-        The output of the model.
-    """
-
-    file: str | None
-    recording: int
-    sample: int
-    time: float | None
-    input: float
-    measured: float
-    modelled: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -985,65 +494,6 @@ class LeftOut(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SeriesSummary(_Result):
-    """One series of a recording.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    unit : str or None
-        Its unit.
-    min : float
-        Smallest value.
-    max : float
-        Largest value.
-    reversals : int
-        Reversals larger than 1 % of its range.
-    reversals_of_any_size : int
-        All reversals. Many more than `reversals` mean noise.
-    """
-
-    name: str
-    unit: str | None
-    min: float
-    max: float
-    reversals: int
-    reversals_of_any_size: int
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Sampling(_Result):
-    """How a recording was sampled.
-
-    Attributes
-    ----------
-    start : float
-        Time of the first sample, s.
-    end : float
-        Time of the last sample, s.
-    median_step : float
-        Median time between samples, s.
-    longest_step : float
-        Longest time between samples, s.
-    longest_step_before_sample : int
-        The sample at its end, counted from 1.
-    gaps : int
-        Number of steps of more than three times the median.
-    repeated : int
-        Number of samples at the time of the one before.
-    """
-
-    start: float
-    end: float
-    median_step: float
-    longest_step: float
-    longest_step_before_sample: int
-    gaps: int
-    repeated: int
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Doubt(_Result):
     """A reason not to believe a recording. `prepare` refuses it, unless `believe` is set.
 
@@ -1113,181 +563,6 @@ class RecordingSummary(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Judged(_Result):
-    """What a step of `prepare` was worth.
-
-    The errors are those of a small model on what it was not fitted to, in the output's unit: mean
-    distances from the output as measured; for a low-pass, the root of the mean squared distance from
-    the output of a simulated recording like this one, without its noise.
-
-    Attributes
-    ----------
-    step : str
-        The step, and the series that it changes.
-    samples : int
-        Number of samples that it changes.
-    before : float or None
-        The error without the step; None if no model can be fitted.
-    after : float or None
-        The error with the step; None if no model can be fitted.
-    kept : bool
-        Whether the step was taken.
-    """
-
-    step: str
-    samples: int
-    before: float | _MaybeNone
-    after: float | _MaybeNone
-    kept: bool
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Repairs(_Result):
-    """Repaired samples of one series.
-
-    Attributes
-    ----------
-    signs : int
-        Number of samples whose sign was restored.
-    spikes : int
-        Number of samples replaced by the line between their neighbours.
-    first : tuple of int
-        The first ten of both, counted from 1 in the original recording.
-    """
-
-    signs: int
-    spikes: int
-    first: tuple[int, ...]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Spikes(_Result):
-    """Lost signs and isolated spikes.
-
-    Attributes
-    ----------
-    deviations : float or None
-        Median absolute deviations that make a spike; None if only signs were restored.
-    input : Repairs
-        Of the input.
-    output : Repairs
-        Of the output.
-    """
-
-    deviations: float | _MaybeNone
-    input: Repairs
-    output: Repairs
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Smoothed(_Result):
-    """The low-pass of one series.
-
-    Attributes
-    ----------
-    cutoff : float
-        Where its gain is ½: Hz, or cycles per sample without time.
-    removed : float
-        Root mean square of what it removed, in the unit of the series.
-    """
-
-    cutoff: float
-    removed: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LowPass(_Result):
-    """The zero-phase low-pass.
-
-    Attributes
-    ----------
-    input : Smoothed or None
-        Of the input; None where there was too little noise.
-    output : Smoothed or None
-        Of the output.
-    in_hertz : bool
-        Whether the cut-offs are in Hz; otherwise they are in cycles per sample.
-    """
-
-    input: Smoothed | None
-    output: Smoothed | None
-    in_hertz: bool
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SensorLag(_Result):
-    """The lag of the input's sensor.
-
-    Attributes
-    ----------
-    undone : float or None
-        Time constant that was undone, s; None where none was worth undoing.
-    estimate : float or None
-        Time constant with which a static model fits best, s.
-    rmse_before : float or None
-        Error of the static model before, in the output's unit.
-    rmse_after : float or None
-        Error with the estimated lag undone, in the output's unit.
-    one_speed : float or None
-        Speed of the input per second, if a lag was estimated where all was recorded at about the
-        same: at other speeds it may be wrong.
-    """
-
-    undone: float | None
-    estimate: float | None
-    rmse_before: float | None
-    rmse_after: float | None
-    one_speed: float | None
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class DeadBand(_Result):
-    """The dead band for reversals of the input.
-
-    Attributes
-    ----------
-    size : float
-        Reversals up to this size are noise, in the input's unit.
-    false_reversals : int
-        Number of reversals removed.
-    samples_changed : int
-        Number of samples changed.
-    largest_change : float
-        Largest change of a sample, in the input's unit.
-    """
-
-    size: float
-    false_reversals: int
-    samples_changed: int
-    largest_change: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class RateDependence(_Result):
-    """How much the output depends on the rate of the input.
-
-    Attributes
-    ----------
-    percent : float
-        Root mean square of what rate alone explains, in percent of the output's range.
-    r2_time : float
-        R² of the static model's residuals, explained by lags in time.
-    r2_path : float
-        The same with the path of the input instead of time.
-    time_constant : float
-        The time constant that explains most, s.
-    nrmse_percent : float
-        Error of the static model (20 levels), in percent of the output's range.
-    """
-
-    percent: float
-    r2_time: float
-    r2_path: float
-    time_constant: float
-    nrmse_percent: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Preparation(_Result):
     """What `prepare` did. A step that was off, or not needed, is None.
 
@@ -1331,100 +606,6 @@ class Preparation(_Result):
     judged: tuple[Judged, ...]
     rate: RateDependence | _MaybeNone
     rate_dependent: bool | None
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Compared(_Result):
-    """Errors of the model that learned beside those of the fixed model.
-
-    Attributes
-    ----------
-    adapting : Errors
-        Of the model that learned, before it learned from the samples compared.
-    fixed : Errors
-        Of the model as it was.
-    """
-
-    adapting: Errors
-    fixed: Errors
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class OutcomeCounts(_Result):
-    """How often each outcome of `Learning` was.
-
-    Attributes
-    ----------
-    learned : int
-        Samples learned from.
-    waiting : int
-        Errors within the dead zone, and unfinished increments.
-    at_rest : int
-        Samples at which the input did not move.
-    rolled_back : int
-        Times that the weights returned to the last good ones.
-    rejected : int
-        Readings rejected.
-    stuck : int
-        Samples at which a channel stood still while the other one moved.
-    outside : int
-        Inputs outside the plane; they are counted among the others too.
-    """
-
-    learned: int
-    waiting: int
-    at_rest: int
-    rolled_back: int
-    rejected: int
-    stuck: int
-    outside: int
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Drift(_Result):
-    """How far a model moved while it learned.
-
-    Attributes
-    ----------
-    weights : tuple of float
-        Sum of the weights before and after, in the output's unit.
-    offset : tuple of float
-        Offset before and after, in the output's unit.
-    moved : float or None
-        Sum of the absolute changes over the sum before; None where that sum is zero.
-    lift : float
-        How far the output with all operators off moved, as a share of the range before.
-    gain : float or None
-        The stroke after over the stroke before, less 1.
-    shift : float
-        How far the operators moved along the input's axis, in the mean, as a share of the plane.
-    """
-
-    weights: tuple[float, float]
-    offset: tuple[float, float]
-    moved: float | None
-    lift: float
-    gain: float | None
-    shift: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class CutOff(_Result):
-    """Where an output stands at an end of what its sensor reads: `AdaptedComparison.cut_off`.
-
-    Attributes
-    ----------
-    value : float
-        The value, in the output's unit.
-    times : int
-        How often the output came there.
-    samples : int
-        Number of such readings.
-    """
-
-    value: float
-    times: int
-    samples: int
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -1570,34 +751,6 @@ class Median(_Result):
     drive_travel: float | None
     saturated: float | None
     faults: float | None
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Ratio(_Result):
-    """A controller beside the one that it has to beat: medians over the seeds.
-
-    Attributes
-    ----------
-    window : str
-        The window.
-    controller : str
-        The controller, in words.
-    name : str
-        Its name in `Comparison.controllers`.
-    compared_with : str
-        The other controller.
-    rmse : float or None
-        Ratio of the tracking errors.
-    prediction_rmse : float or None
-        Ratio of the models' errors; None where one of the controllers has no model.
-    """
-
-    window: str
-    controller: str
-    name: str
-    compared_with: str
-    rmse: float | None
-    prediction_rmse: float | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

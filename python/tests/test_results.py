@@ -92,3 +92,12 @@ def test_what_a_model_file_says_beside_is_kept():
     adapted = pyhysteron.adapt(model, input, model.simulate(input)).model
     assert adapted.fit.other["adapted"]["method"] == "auto"
     assert pyhysteron.Model.from_json(adapted.to_json()).fit == adapted.fit
+
+
+def test_the_summary_of_a_late_model_says_how_late():
+    time = 0.1 * np.arange(400)
+    swing = 1 - np.cos(time)
+    recording = pyhysteron.Recording(swing, np.roll(swing, 3), time=time)
+    late = pyhysteron.fit(recording, levels=5, delay=3, bootstrap=0)
+    assert late.summary().delay_s == pytest.approx(0.3)
+    assert pyhysteron.fit(recording, levels=5, delay=0, bootstrap=0).summary().delay_s is None

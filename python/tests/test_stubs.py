@@ -1,4 +1,4 @@
-"""The type stubs say what the module has, and are those that `python/stubs` writes."""
+"""The type stubs say what the module has. They and the results are what `python/stubs` and `python/results` write."""
 
 import pathlib
 import subprocess
@@ -9,8 +9,9 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def test_they_are_written_by_the_script():
-    done = subprocess.run([sys.executable, ROOT / "python/stubs", "--check"], capture_output=True, text=True)
+@pytest.mark.parametrize("script", ["stubs", "results"])
+def test_they_are_written_by_the_script(script):
+    done = subprocess.run([sys.executable, ROOT / "python" / script, "--check"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
 

@@ -95,10 +95,10 @@ pub use inspect::{
     StageSummary, Uncertain, inspect_model, inspect_recording,
 };
 pub use model::{
-    Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Delay, Excitation, FirstOrder,
-    FitSummary, FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model,
-    OperatorState, Operators, Plane, Policy, Registration, RivalScore, Sample, Score, SeenFile,
-    Sign, Smooth, Solver, StageConstants, Start, State, Surroundings, Validation, Wanted,
+    Band, BandEvaluation, Bounds, Change, Confidence, CreepTerm, Criterion, Delay, Excitation,
+    FirstOrder, FitSummary, FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart,
+    Model, OperatorState, Operators, Plane, Policy, Registration, RivalScore, Sample, Score,
+    SeenFile, Sign, Smooth, Solver, StageConstants, Start, State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, Doubt, Judged, LowPass, Preparation, PrepareOptions, RateDependence, Repairs,

@@ -8,7 +8,7 @@ use super::basis::along_diagonal;
 use super::begun::{Begun, run_from};
 use super::window::TURN;
 use crate::error::Result;
-use crate::model::{Model, Operators, Plane, Start};
+use crate::model::{FitSummary, Model, Operators, Plane, Start};
 use crate::recording::Recording;
 use crate::series::{Line, branch_spans, range};
 use hysteron_core::Outcome;
@@ -16,11 +16,6 @@ use hysteron_core::Outcome;
 /// A loop is so many ranges of the input long, there and back; the rest is how it was entered and
 /// left.
 const LOOP: f64 = 2.5;
-
-/// Standard deviations between sessions: of the gain, and of the shift as a share of the plane. A
-/// constant added to the output may be of any size.
-const GAIN: f64 = 0.2;
-const SHIFT: f64 = 0.02;
 
 /// Shifts up to this share of the plane are tried, by a quarter of a level or so that there are at
 /// most so many in each direction: each costs a run.
@@ -172,15 +167,17 @@ fn shifted(
     };
     let readings = READINGS.min(sure.len() as f64);
     // The prior of the gain weighs as much as so many readings with the error that is left.
-    let prior = squares(line.slope()) / (readings * GAIN.powi(2));
+    let known = model.fit.as_ref().and_then(FitSummary::change);
+    let change = known.unwrap_or_default();
+    let prior = squares(line.slope()) / (readings * change.gain.powi(2));
     let gain = (line.common + prior) / (line.spread + prior);
     if !(line.spread > 0.0 && gain.is_finite() && gain > 0.0) {
         return Ok(None);
     }
     let share = levels / model.plane().levels() as f64;
     let doubt = readings * squares(gain).max(f64::MIN_POSITIVE).ln()
-        + (share / SHIFT).powi(2)
-        + ((gain - 1.0) / GAIN).powi(2);
+        + (share / change.shift).powi(2)
+        + ((gain - 1.0) / change.gain).powi(2);
     let found = with(gain, line.inclined(gain, 0.0)).ok();
     Ok(found.map(|model| (doubt, model)))
 }

@@ -129,7 +129,7 @@ pub fn rested_words(rests: &[Option<f64>], input: &Quantity) -> Option<String> {
         let found = found.join(", ");
         format!(
             "the body did not begin at rest with its first drive: it was at rest with {found}, \
-             found from the beginning; simulate needs it as --rest"
+             found from the beginning; to simulate, give this rest"
         )
     })
 }

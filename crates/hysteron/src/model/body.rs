@@ -133,6 +133,7 @@ impl FirstOrder {
         let time = recording.time.as_ref().ok_or_else(needs_time)?;
         Ok(Recording {
             input: self.respond_from(recording.rest, time, &recording.input)?,
+            rest: None,
             ..recording.clone()
         })
     }

@@ -179,6 +179,7 @@ impl Model {
                 let around = Surroundings::from_recording(self, recording);
                 Ok(Cow::Owned(Recording {
                     input: self.along(&recording.input, around, State::temperature)?,
+                    rest: None,
                     ..recording.clone()
                 }))
             }

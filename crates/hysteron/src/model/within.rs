@@ -83,6 +83,7 @@ impl Model {
             input: self.seen(&recording.input, around)?.into_owned(),
             output: self.before_stages(recording)?,
             load: None,
+            rest: None,
             ..recording.clone()
         }))
     }

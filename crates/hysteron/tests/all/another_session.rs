@@ -2,8 +2,8 @@
 //! far more than the model as it was. The plants are simulated.
 
 use hysteron::{
-    AdaptOptions, Adapted, CreepTerm, Model, Operator, Plane, Progress, Recording, Sign, Start,
-    Surroundings, adapt, evaluate_from,
+    AdaptOptions, Adapted, CreepTerm, Fit, Model, Operator, Plane, Progress, Recording, Sign,
+    Start, Surroundings, adapt, evaluate_from,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -236,4 +236,78 @@ fn a_model_with_stages_errs_as_it_was_judged() {
         );
         assert!(written < 0.05 * range, "{seed}: {written}");
     }
+}
+
+/// An actuator that changes little: its repeats say so, and one noisy loop then moves it less.
+#[test]
+fn repeats_tell_how_much_an_actuator_changes() {
+    let (mut known, mut usual) = (0.0, 0.0);
+    for seed in 0..30 {
+        let mut rng = ChaCha8Rng::seed_from_u64(300 + seed);
+        let truth = actuator(&mut rng);
+        let (off, on) = truth.output_range();
+        let mut recorded = |change: Change, turns: &[f64], noise: f64| {
+            let input = path(&truth, turns, 100);
+            let mut output = plant(&truth, change, &input);
+            for y in &mut output {
+                *y += noise * (on - off) * rng.random_range(-1.0..1.0);
+            }
+            Recording::new(input, output).unwrap()
+        };
+        let still = Change {
+            gain: 1.0,
+            lift: 0.0,
+            shift: 0.0,
+        };
+        let strokes = [0.0, 1.0, 0.0, 0.8, 0.2, 0.6, 0.0, 0.4, 0.1, 1.0, 0.0];
+        let first = recorded(still, &strokes, 0.003);
+        let signs = [-1.0, 1.0, -1.0, 1.0];
+        let repeats = signs.map(|sign| {
+            let change = Change {
+                gain: 1.0 + 0.01 * sign,
+                lift: 0.2 * sign,
+                shift: 0.0,
+            };
+            recorded(change, &strokes, 0.003)
+        });
+        let fit = Fit::new()
+            .bootstrap(0)
+            .levels(12)
+            .operator(truth.operator());
+        let alone = fit.clone().run(&first).unwrap();
+        let told = fit.repeats(repeats.to_vec()).run(&first).unwrap();
+        assert!(alone.fit.as_ref().unwrap().change().is_none());
+        let change = told.fit.as_ref().unwrap().change().unwrap();
+        // One usual session and four that changed next to nothing.
+        assert!(
+            (change.gain / (0.2 / 5.0_f64.sqrt()) - 1.0).abs() < 0.05,
+            "{change:?}"
+        );
+        assert!(change.shift < 0.012, "{change:?}");
+
+        let next = Change {
+            gain: 1.01,
+            lift: -0.2,
+            shift: 0.0,
+        };
+        let noisy = recorded(next, &[0.0, 1.0, 0.0], 0.2);
+        let clean = recorded(next, &strokes, 0.0);
+        let error = |model: &Model| {
+            let adapted = adapt(model, &noisy, &AdaptOptions::default(), Progress::NONE).unwrap();
+            let ran = adapted.model.simulate(&clean.input).unwrap();
+            let squares: f64 = ran
+                .iter()
+                .zip(&clean.output)
+                .map(|(h, y)| (h - y).powi(2))
+                .sum();
+            (squares / ran.len() as f64).ln()
+        };
+        known += error(&told);
+        usual += error(&alone);
+    }
+    println!(
+        "{:.3} of the squared error",
+        ((known - usual) / 30.0_f64).exp()
+    );
+    assert!(known < usual);
 }

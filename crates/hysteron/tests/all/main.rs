@@ -54,5 +54,6 @@ mod unknown_load;
 mod validation;
 mod vectors;
 mod verdict;
+mod warm;
 mod weight_prior;
 mod wrong_readings;

@@ -3,6 +3,7 @@
 
 pub(super) mod bootstrap;
 mod calibrate;
+mod change;
 pub(super) mod confidence;
 pub(super) mod excitation;
 pub(super) mod sessions;

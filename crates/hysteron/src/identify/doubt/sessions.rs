@@ -2,19 +2,24 @@
 
 use crate::error::Result;
 use crate::identify::doubt::calibrate::{missing, quantile};
+use crate::identify::doubt::change::change;
 use crate::identify::history::find_start;
 use crate::identify::rest::with_rests;
 use crate::model::{INTERVAL, Model, SeenFile, Surroundings};
 use crate::recording::Recording;
 use crate::series::{branch_spans, usual_tolerance};
 
-/// Widens the band of a model with confidence so that it holds 95 % of the samples of the
-/// `repeats`, too. Weights and offset stay as they are. The start of each repeat is estimated from
+/// Tells how much the `repeats` changed, and widens the band of a model with confidence so that it
+/// holds 95 % of their samples, too. Weights and offset stay as they are. The start of each repeat is estimated from
 /// its beginning.
 ///
 /// # Errors
 /// As [`crate::evaluate_from`].
 pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
+    let change = change(model, &with_rests(model, repeats)?)?;
+    if let (Some(fit), Some(change)) = (&mut model.fit, change) {
+        fit.tell_change(change);
+    }
     let Some(band) = model.band()? else {
         return Ok(());
     };

@@ -67,6 +67,7 @@ impl Heated {
             true => self.body.behind(recording),
             false => Ok(Recording {
                 input: self.respond(recording)?,
+                rest: None,
                 ..recording.clone()
             }),
         };

@@ -44,7 +44,7 @@ pub(super) fn rested(
         ..options.clone()
     };
     let search = Search::new(recordings, &coarse, progress)?;
-    let (_, (mut tau, mut share)) = search.look()?;
+    let (_, (_, (mut tau, mut share))) = search.look()?;
     if let Some(first) = share {
         let value = |[tau, share]: &[f64; 2]| match (0.0..=1.0).contains(share) {
             true => search
@@ -65,13 +65,14 @@ pub(super) fn rested(
 }
 
 impl Search<'_> {
-    /// The least error at a look, and where it is: with one time constant on a coarse grid, and
-    /// there with one of a few rests for all recordings. What a wrong rest leaves takes longer than
-    /// the body does, so the next shorter time constant is looked at as well.
-    pub(super) fn look(&self) -> Result<(f64, Point)> {
+    /// The least error at a look with one time constant on a coarse grid, at rest with the first
+    /// drives; and the least one, and where it is, there or with one of a few rests for all
+    /// recordings. What a wrong rest leaves takes longer than the body does, so the next shorter
+    /// time constant is looked at as well.
+    pub(super) fn look(&self) -> Result<(f64, (f64, Point))> {
         let resting = self.resting(None);
-        let ([first], rmse) = self.of(&resting).best_of_grid(common)?;
-        let mut best = (rmse, (first, None));
+        let ([first], at_first) = self.of(&resting).best_of_grid(common)?;
+        let mut best = (at_first, (first, None));
         for share in LOOKS {
             let resting = self.resting(Some(share));
             let search = self.of(&resting);
@@ -82,7 +83,7 @@ impl Search<'_> {
                 }
             }
         }
-        Ok(best)
+        Ok((at_first, best))
     }
 
     /// The recordings with the rests with which a model behind the body errs least. Weights and
