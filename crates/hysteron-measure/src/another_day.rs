@@ -16,9 +16,9 @@ const SESSIONS: [&[&str]; 2] = [
 pub(crate) fn print(folder: &Path) -> Result<()> {
     print!("{}", include_str!("text/another-day.md"));
     println!(
-        "| fitted | of the other day | outside | alone | constant | line | adapted | repeated | itself |"
+        "| fitted | of the other day | outside | alone | constant | line | adapted | itself |"
     );
-    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
     let columns = Columns::new("voltage_V", "position");
     let open = |name: &&str| -> Result<(String, Recording, Model)> {
         let recording = read(folder, &format!("{name}.csv"), columns)?;
@@ -31,23 +31,22 @@ pub(crate) fn print(folder: &Path) -> Result<()> {
     let pairs = first
         .iter()
         .flat_map(|a| second.iter().flat_map(move |b| [(a, b), (b, a)]));
-    let (mut sums, mut count) = ([0.0; 6], 0.0);
-    for ((from, fitted, model), (to, recording, itself)) in pairs {
+    let (mut sums, mut count) = ([0.0; 5], 0.0);
+    for ((from, _, model), (to, recording, itself)) in pairs {
         if to == "valve_prbn_1" {
             continue;
         }
         let stroke = longest(recording);
-        let adapted = learned(model, &stroke)?;
-        // The other recordings of that day tell how much it changes.
-        let day = [&first, &second].into_iter();
-        let day = day.filter(|day| day.iter().any(|(name, ..)| name == to));
-        let others = day.flatten().filter(|(name, ..)| name != to);
-        let others = others.map(|(_, recording, _)| recording.clone()).collect();
-        let fit = Fit::new().bootstrap(0).repeats(others);
-        let repeated = learned(&fit.run(fitted)?, &stroke)?;
+        let adapted = adapt(model, &stroke, &AdaptOptions::default(), Progress::NONE)?;
+        // One that ended worse is not written.
+        let adapted = if adapted.worse {
+            model.clone()
+        } else {
+            adapted.model
+        };
         let (constant, line) = moved(model, &stroke)?;
-        let each = [model, &constant, &line, &adapted, &repeated, itself];
-        let mut errors = [0.0; 6];
+        let each = [model, &constant, &line, &adapted, itself];
+        let mut errors = [0.0; 5];
         for (error, model) in errors.iter_mut().zip(each) {
             *error = found(model, recording)?;
         }
@@ -58,7 +57,7 @@ pub(crate) fn print(folder: &Path) -> Result<()> {
         let cells: Vec<String> = errors.iter().map(|e| format!("{e:.2}")).collect();
         println!("| {from} | {to} | {share:.0} % | {} |", cells.join(" | "));
         for (sum, error) in sums.iter_mut().zip(errors) {
-            *sum += (error / errors[5]).ln();
+            *sum += (error / errors[4]).ln();
         }
         count += 1.0;
     }
@@ -71,15 +70,6 @@ pub(crate) fn print(folder: &Path) -> Result<()> {
         means.join(" | ")
     );
     Ok(())
-}
-
-/// The model after one pass over a stroke. One that ended worse is not written.
-fn learned(model: &Model, stroke: &Recording) -> Result<Model> {
-    let adapted = adapt(model, stroke, &AdaptOptions::default(), Progress::NONE)?;
-    Ok(match adapted.worse {
-        true => model.clone(),
-        false => adapted.model,
-    })
 }
 
 /// The longest stroke of a recording.

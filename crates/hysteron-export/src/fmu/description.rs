@@ -5,6 +5,7 @@ use super::options::Block;
 use super::units;
 use super::variables::{Kind, Variable};
 use hysteron::{Error, Model, Result};
+use hysteron_core::Unit;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use std::collections::BTreeSet;
@@ -65,11 +66,12 @@ fn about(model: &Model, block: Block<'_>) -> String {
 /// The step of a default experiment: a tenth of the shortest time constant, or of 0.1 s for a model
 /// without time.
 fn step(model: &Model) -> f64 {
-    let body = model.thermal.iter();
-    let body = body.flat_map(|body| [body.tau_heating, body.tau_cooling]);
-    let creep = model.creep().into_iter().map(|term| term.tau);
-    let all = body.chain(creep).chain([model.lag()]);
-    let shortest = all.filter(|tau| *tau > 0.0).fold(0.1, f64::min);
+    let constants = model.constants();
+    let times = constants
+        .iter()
+        .filter(|(constant, _)| constant.unit == Unit::Second);
+    let times = times.flat_map(|(_, numbers)| numbers).copied();
+    let shortest = times.filter(|tau| *tau > 0.0).fold(0.1, f64::min);
     0.1 * shortest
 }
 

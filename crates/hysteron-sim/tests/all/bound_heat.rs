@@ -168,3 +168,36 @@ fn a_fit_without_options_finds_the_body() {
     println!("left out {left_out:.2} and {without:.2} %, held out {with:.2} and {cold:.2} %");
     assert!(left_out < 0.5 * without && with < 0.5 * cold);
 }
+
+/// The same steps from rest, and from a wire that had been heated for 20 s before anybody recorded.
+#[test]
+fn a_wire_that_was_warm_when_the_recording_began_is_fitted_as_well() {
+    let options = LatentWirePlantOptions::default();
+    let steps = [
+        0.1, 0.9, 0.0, 1.0, 0.0, 0.65, 0.2, 0.8, 0.4, 0.55, 0.0, 0.9, 0.3, 0.7, 0.0,
+    ];
+    let steps = held(steps.map(|share| (0.6 * share, 10.0)));
+    let before = held([(0.55, 20.0)]);
+    let all = record(options, &[&before[..], &steps].concat(), 4);
+    // The first row after it still has the drive held until then.
+    let cut = |series: &[f64]| series[before.len() + 1..].to_vec();
+    let warm = Recording {
+        time: all.time.as_deref().map(cut),
+        input: cut(&all.input),
+        output: cut(&all.output),
+        ..all
+    };
+    let model = |recording: &Recording| {
+        let fit = Fit::new().bootstrap(0).levels(20);
+        fit.run(std::slice::from_ref(recording)).unwrap()
+    };
+    let (warm, rested) = (model(&warm), model(&record(options, &steps, 4)));
+    let errors = [predicted(&warm), predicted(&rested)];
+    let rests = warm.fit.as_ref().unwrap().rests();
+    println!("{errors:?} % of the stroke, {rests:?}");
+    assert!(rests[0].is_some_and(|rest| rest > 0.3), "{rests:?}");
+    assert!(rested.fit.as_ref().unwrap().rests().is_empty());
+    // The rest is one more number to find. A body that takes the first drive for it errs nine times
+    // as much.
+    assert!(errors[0] < 2.0 * errors[1]);
+}

@@ -14,10 +14,10 @@ use hysteron_core::{Adaptation, Channel, Learning, Solution, StageState, Stages}
 /// A [`Model`] whose weights and offset follow the plant, with its state.
 ///
 /// Stages around the operators stay as they are. Those in front, such as a thermal body, give the
-/// operators' input. Those behind, such as creep, a lag or an output curve, are undone: the
+/// operators' input. Those behind, such as a lag or an output curve, are undone: the
 /// operators learn from the output that they must have given. So noise of a reading behind a lag is
 /// larger for the learner, by the time constant over the time step. What the learner adds to the
-/// offset stands in front of these stages, too: at rest it passes creep and lag, and it shifts the
+/// offset stands in front of these stages, too: at rest it passes them, and it shifts the
 /// knots of a curve.
 ///
 /// ```
@@ -163,11 +163,11 @@ impl Adaptive {
     /// the time since the sample before.
     ///
     /// ```
-    /// use hysteron::{Adaptive, CreepTerm, Model, Operator, Plane, Refit, Sample, Sign};
+    /// use hysteron::{Adaptive, Model, Operator, Plane, Refit, Sample, Sign};
     /// let plane = Plane::new(20.0, 80.0, 5)?;
     /// let model = |weight: f64| {
     ///     let model = Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive)?;
-    ///     model.with_after(&[CreepTerm { coefficient: 0.1, tau: 2.0 }], 0.0)
+    ///     model.with_after(&[], 0.2)
     /// };
     /// let mut adaptive = Adaptive::refitting(&model(1.0)?, Refit::default())?;
     /// let (plant, mut state) = (model(1.5)?, model(1.5)?.start());

@@ -18,11 +18,22 @@ const TERMS: [usize; 2] = [1, 3];
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Report {
     /// Error on blocks left out without creep and lag, in percent of the range.
-    pub(super) without: f64,
+    without: f64,
     /// The same with the creep and the lag taken.
-    pub(super) with: f64,
+    with: f64,
     /// Whether creep was looked for, and not a lag alone.
-    pub(super) creep: bool,
+    creep: bool,
+}
+
+impl Report {
+    /// Where a lag alone was looked for.
+    pub(super) fn of_lag(without: f64, with: f64) -> Self {
+        Self {
+            without,
+            with,
+            creep: false,
+        }
+    }
 }
 
 /// Looks for the creep and the lag that are asked for.

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::lost::fill;
 
-/// A lag alone can be judged by shorter blocks than creep. The error of long ones is that of loops
+/// A lag alone can be judged by shorter blocks than slower stages. The error of long ones is that of loops
 /// that the others do not have, and it hides a lag.
 const SHORT_BLOCKS: usize = 24;
 
@@ -43,10 +43,10 @@ pub(super) fn find(
     let right: Vec<Recording> = looked_at.iter().map(with_right_input).collect();
     let mut search = Search::new(&right, options, open, progress)?;
     search.blocks = SHORT_BLOCKS;
-    let bare = search.creep(0, 0.0)?;
+    let bare = search.lagging(0.0)?;
     let mut helps = false;
     for steps in HINTS {
-        helps = helps || search.creep(0, steps * search.step)?.1 <= (1.0 - HINT) * bare.1;
+        helps = helps || search.lagging(steps * search.step)?.1 <= (1.0 - HINT) * bare.1;
     }
     if !helps {
         return Ok(None);
@@ -56,11 +56,7 @@ pub(super) fn find(
     };
     search.refine_lag(&mut best)?;
     let (without, with) = (search.judged(bare)?, search.judged(best)?);
-    let report = Report {
-        without: without.left_out,
-        with: with.left_out,
-        creep: false,
-    };
+    let report = Report::of_lag(without.left_out, with.left_out);
     let worth = match with.after.lag() > LONG * search.step {
         true => LONG_WORTH,
         false => WORTH,

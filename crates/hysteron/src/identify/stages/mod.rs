@@ -45,7 +45,7 @@ use std::borrow::Cow;
 
 /// The entry of a fit's record for a ring that was found.
 pub(crate) const RING: &str = "ring";
-/// The entry for creep and lag that were looked for.
+/// The entry for what comes late behind the operators and was looked for.
 pub(crate) const AFTER: &str = "after";
 
 /// What a fit identifies besides the weights.
@@ -121,7 +121,7 @@ pub(crate) fn fit(
         seen = Cow::Owned(swinging.recordings);
         ring = Some(swinging.constants);
     }
-    // So would what creeps or comes late.
+    // So would what comes late.
     let after = match options.asks_after() {
         true => Some(after::find(&seen, &options, asked.open, progress)?),
         false

@@ -218,10 +218,15 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
+    /// A lag alone, and its error on what is fitted.
+    pub(super) fn lagging(&mut self, lag: f64) -> Result<(After, f64)> {
+        self.rated(After::after(&[], lag)?)
+    }
+
     /// The best creep of `count` terms with this lag, and its error on what is fitted.
     pub(super) fn creep(&mut self, count: usize, lag: f64) -> Result<(After, f64)> {
         if count == 0 {
-            return self.rated(After::after(&[], lag)?);
+            return self.lagging(lag);
         }
         let tried = |coefficient: f64| match count {
             // The time constant of a single term is searched too.

@@ -1,4 +1,4 @@
-//! Undoes creep and lag, and puts them behind the operators again.
+//! Undoes what comes late behind the operators, and puts it there again.
 
 use crate::error::{Error, Result};
 use crate::model::{Model, Operators, StageConstants};
@@ -7,7 +7,7 @@ use crate::remedy::{Remedy, Setting};
 
 pub(super) type After = StageConstants<f64>;
 
-/// The recordings with the output as it was before creep and lag.
+/// The recordings with the output as it was before these stages.
 pub(super) fn before(after: &After, recordings: &[Recording]) -> Result<Vec<Recording>> {
     Ok(with_outputs(
         recordings,
@@ -26,14 +26,14 @@ pub(super) fn with_outputs(recordings: &[Recording], mut outputs: &[f64]) -> Vec
     others
 }
 
-/// The outputs of all recordings as they were before creep and lag.
+/// The outputs of all recordings as they were before these stages.
 pub(super) fn undone_outputs(after: &After, recordings: &[Recording]) -> Result<Vec<f64>> {
     let around = around(after, recordings)?;
     let undone = recordings.iter().map(|r| around.before_stages(r));
     Ok(undone.collect::<Result<Vec<_>>>()?.concat())
 }
 
-/// A model of any operators with creep and lag.
+/// A model of any operators with these stages.
 fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
     let plane = crate::identify::plane_of(&recordings[0], 2)?;
     let operator = hysteron_core::Operator::Mkp;
@@ -41,7 +41,7 @@ fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
     Model::from(operators).with_after(&after.terms(), after.lag())
 }
 
-/// Outputs after creep and lag, from those of the operators.
+/// Outputs after these stages, from those of the operators.
 pub(super) fn forward(after: &After, recordings: &[Recording], sums: &[f64]) -> Result<Vec<f64>> {
     let model = around(after, recordings)?;
     let stages = model.stages();
@@ -61,7 +61,7 @@ pub(super) fn forward(after: &After, recordings: &[Recording], sums: &[f64]) -> 
     Ok(output)
 }
 
-/// A recording without time, for options that ask for creep or a lag.
+/// A recording without time, for options that ask for such a stage.
 pub(super) fn no_time() -> Error {
     let what = "creep, lag and ring depend on time, and the recording has none";
     let remedy = Remedy::new("name its column ({})", [Setting::any("time")]);

@@ -24,6 +24,10 @@ const EDGE: f64 = 0.3;
 const TOLERANCE: f64 = 0.01;
 const STEPS: usize = 60;
 
+/// Rests have to reduce the error of the fit to this part: whatever a model does wrong at the
+/// beginning, they make a little better.
+const WORTH: f64 = 0.9;
+
 /// Weights and rests are found in turn, so often at most.
 const ROUNDS: usize = 6;
 
@@ -44,16 +48,22 @@ pub(super) fn rested(
         ..options.clone()
     };
     let search = Search::new(recordings, &coarse, progress)?;
-    let (_, (_, (mut tau, mut share))) = search.look()?;
+    let ((_, at_first), (_, (mut tau, mut share))) = search.look()?;
     if let Some(first) = share {
+        let resting = search.resting(None);
+        let alone = |tau: &[f64; 1]| search.of(&resting).rmse_inside(tau, common);
+        let ([at], without) = minimise([at_first], EDGE, TOLERANCE, STEPS, alone)?;
         let value = |[tau, share]: &[f64; 2]| match (0.0..=1.0).contains(share) {
             true => search
                 .of(&search.resting(Some(*share)))
                 .rmse_inside(&[*tau], common),
             false => Ok(f64::INFINITY),
         };
-        let ([at, rest], _) = minimise([tau, first], EDGE, TOLERANCE, STEPS, value)?;
-        (tau, share) = (at, Some(rest));
+        let ([beside, rest], with) = minimise([tau, first], EDGE, TOLERANCE, STEPS, value)?;
+        (tau, share) = match with <= WORTH * without {
+            true => (beside, Some(rest)),
+            false => (at, None),
+        };
     }
     let body = FirstOrder {
         tau_heating: tau.exp(),
@@ -66,10 +76,10 @@ pub(super) fn rested(
 
 impl Search<'_> {
     /// The least error at a look with one time constant on a coarse grid, at rest with the first
-    /// drives; and the least one, and where it is, there or with one of a few rests for all
+    /// drives, and its logarithm; and the least one, and where it is, there or with one of a few rests for all
     /// recordings. What a wrong rest leaves takes longer than the body does, so the next shorter
     /// time constant is looked at as well.
-    pub(super) fn look(&self) -> Result<(f64, (f64, Point))> {
+    pub(super) fn look(&self) -> Result<((f64, f64), (f64, Point))> {
         let resting = self.resting(None);
         let ([first], at_first) = self.of(&resting).best_of_grid(common)?;
         let mut best = (at_first, (first, None));
@@ -83,7 +93,7 @@ impl Search<'_> {
                 }
             }
         }
-        Ok((at_first, best))
+        Ok(((at_first, first), best))
     }
 
     /// The recordings with the rests with which a model behind the body errs least. Weights and
@@ -94,7 +104,7 @@ impl Search<'_> {
         for _ in 0..ROUNDS {
             let model = self.of(&now).model(heated, None)?;
             let rmse = model.fit.as_ref().map_or(f64::INFINITY, |fit| fit.rmse);
-            if rmse >= least {
+            if rmse >= WORTH * least {
                 break;
             }
             (least, best) = (rmse, now.clone());
