@@ -193,10 +193,10 @@ impl State {
     /// ([`State::stage_numbers`]). With [`Model::restore`] it is the whole state.
     ///
     /// ```
-    /// # use hysteron::{CreepTerm, Model, Operator, Plane, Sample, Sign};
+    /// # use hysteron::{Model, Operator, Plane, Sample, Sign};
     /// # let plane = Plane::new(1.0, 2.0, 2)?;
     /// # let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
-    /// let model = model.with_after(&[CreepTerm { coefficient: 0.1, tau: 2.0 }], 0.5)?;
+    /// let model = model.with_after(&[], 0.5)?;
     /// let mut state = model.start();
     /// for input in [0.0, 2.0, 1.3] {
     ///     model.step(&mut state, Sample { dt: Some(0.1), ..input.into() })?;
