@@ -635,6 +635,7 @@ class Model:
         time: _Times | None = None,
         load: float | ArrayLike | None = None,
         start: Literal["fitted", "off", "on"] = "fitted",
+        rest: float | None = None,
     ) -> _S: ...
     @overload
     def simulate(
@@ -644,6 +645,7 @@ class Model:
         time: _Times | None = None,
         load: float | ArrayLike | None = None,
         start: Literal["fitted", "off", "on"] = "fitted",
+        rest: float | None = None,
     ) -> _Array: ...
     def start(self, *, on: bool | None = None) -> State: ...
     def summary(self) -> ModelSummary: ...

@@ -54,8 +54,8 @@ class Errors(_Result):
     max_abs : float
         Largest absolute difference, in the unit of the series.
     nrmse_percent : float or None
-        `rmse` in percent of the measured range of the whole series, which wrong readings do not set
-        (`fair_range`); None where that range is zero.
+        `rmse` in percent of the measured range of the whole series, which wrong readings do not set; None
+        where that range is zero.
     samples : int
         Number of samples compared.
     """
@@ -123,7 +123,7 @@ class RivalScore(_Result):
     Attributes
     ----------
     name : str
-        Its name, see `RivalKind.name`.
+        Its name, such as `straight line`.
     nrmse_percent : float
         Root mean squared error on what was left out, in percent of the measured range.
     """
@@ -205,14 +205,14 @@ class RivalErrors(_Result):
     Attributes
     ----------
     name : str
-        Its name, see `RivalKind.name`.
+        Its name, such as `straight line`.
     rmse : float
         Root of the mean squared difference, in the unit of the series.
     max_abs : float
         Largest absolute difference, in the unit of the series.
     nrmse_percent : float or None
-        `rmse` in percent of the measured range of the whole series, which wrong readings do not set
-        (`fair_range`); None where that range is zero.
+        `rmse` in percent of the measured range of the whole series, which wrong readings do not set; None
+        where that range is zero.
     samples : int
         Number of samples compared.
     """
@@ -238,8 +238,7 @@ class HeldOut(_Result):
         Whether no dead time, ring, lag or body was looked for, because more than the end of a recording was
         held out.
     at_end : bool
-        Whether a share of the branches was held out at the end (`Recording.split_end`), and not spread over
-        each recording.
+        Whether a share of the branches was held out at the end, and not spread over each recording.
     """
 
     model: Errors

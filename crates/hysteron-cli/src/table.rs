@@ -30,12 +30,10 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
                     load: load.as_deref(),
                     repair: args.repair.what(),
                 },
+                rest: args.rest,
                 band: band.as_ref(),
             };
-            let mut state = args.start.state(&model);
-            if let Some(rest) = args.rest {
-                model.step(&mut state, rest)?;
-            }
+            let state = args.start.state(&model);
             hysteron::simulate_table(&model, state, table, what, out, progress)
         },
     )

@@ -172,6 +172,7 @@ impl Coverage {
         let Some(band) = model.band()? else {
             return Ok(());
         };
+        let recording = &*model.rested(recording)?;
         let around = hysteron::Surroundings::from_recording(model, recording);
         let output = model.simulate_in(&recording.input, around)?;
         let acting = model.acting(&recording.input, around)?;

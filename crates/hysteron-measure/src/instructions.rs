@@ -256,6 +256,7 @@ fn work(task: &str, levels: usize, input: &str, times: usize) -> Result<()> {
             let what = Simulate {
                 input: "input",
                 around: Around::default(),
+                rest: None,
                 band: None,
             };
             let out = TableWriter::in_memory("out.csv", &account)?;

@@ -1,6 +1,6 @@
 //! `Model.simulate`, `band`, `evaluate`, `start` and `inverse`.
 
-use crate::around::Around;
+use crate::around::{Around, loads};
 use crate::array::{like, samples};
 use crate::choices::{STARTS, choice, none_left};
 use crate::error::{Raise, finite, number};
@@ -10,6 +10,7 @@ use crate::inverse::Inverse;
 use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
+use hysteron::Surroundings;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -77,7 +78,8 @@ impl Model {
     ) -> PyResult<Bound<'py, PyAny>> {
         let state = self.start(choice("start", start, &BEGINS)?);
         if let Some(rest) = rest {
-            state.step(py, rest, None, None)?;
+            let first = load.map(|load| loads(load, 1)).transpose()?;
+            state.step(py, rest, None, first.and_then(|all| all.first().copied()))?;
         }
         if self.inner.delay().is_none() {
             return state.run(py, input, time, load);
@@ -86,7 +88,11 @@ impl Model {
             let array = samples(input, "input")?;
             let samples = array.as_slice()?;
             let around = Around::new(&self.inner, samples.len(), time, load)?;
-            let acting = self.inner.acting(samples, around.lent());
+            let lent = Surroundings {
+                rest,
+                ..around.lent()
+            };
+            let acting = self.inner.acting(samples, lent);
             acting
                 .raise_of("input", samples)?
                 .into_owned()

@@ -1,7 +1,7 @@
 //! Warnings about a fit: signs in the data that the model may not be what the user expects.
 
 use crate::error::{Place, Result};
-use crate::identify::{AGAINST_INPUT, MANY_OPEN, way_against_input, with_rest};
+use crate::identify::{AGAINST_INPUT, MANY_OPEN, way_against_input};
 use crate::model::{Model, Outlier, Solver, Start, Surroundings};
 use crate::prepare::mended::{replaced, settles};
 use crate::recording::{Quantity, Recording, named};
@@ -245,7 +245,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     let (mut inputs, mut samples, mut against) = (0, 0, 0.0_f64);
     let wrong: Vec<_> = recordings.iter().map(Recording::wrong_readings).collect();
     for (recording, wrong) in recordings.iter().zip(&wrong) {
-        let recording = &*with_rest(model, recording)?;
+        let recording = &*model.rested(recording)?;
         let seen = model.behind_body(recording)?;
         let positions = match &model.load {
             // The load moves the axis under the plane.

@@ -160,6 +160,9 @@ impl BatchModel {
         if samples == 0 {
             return Ok(ClippedCount::default());
         }
+        if surroundings.rest.is_some_and(|rest| !rest.is_finite()) {
+            return Err(CoreError::InputNotFinite { index: 0 }.into());
+        }
         if let Some(n) = inputs.iter().position(|input| !input.is_finite()) {
             let index = n % samples;
             return Err(Error::from(CoreError::InputNotFinite { index }).in_lane(n / samples));
@@ -185,13 +188,17 @@ impl BatchModel {
         // A stage can refuse a sample in the middle. So these lanes move in copies of their states.
         let moved = parallel::map_mut(&mut staged, least, |job| {
             let mut state = job.state.clone();
-            let clipped = job.run(&mut state, surroundings.time)?;
+            let clipped = job.run(&mut state, surroundings)?;
             Ok((state, clipped))
         });
         let moved = moved.into_iter().collect::<Result<Vec<_>>>()?;
         // These have been checked: from here on nothing is refused.
         let clipped = parallel::map_mut(&mut plain, least, |job| {
-            let run = job.model.run(job.state, job.input, job.output);
+            let around = Surroundings {
+                rest: surroundings.rest,
+                ..Surroundings::default()
+            };
+            let run = job.model.run_in(job.state, job.input, around, job.output);
             run.map_err(|error| error.in_lane(job.number))
         });
         let mut all = clipped.into_iter().collect::<Result<Vec<_>>>()?;
@@ -284,13 +291,9 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run(&mut self, state: &mut State, time: Option<&[f64]>) -> Result<ClippedCount> {
+    fn run(&mut self, state: &mut State, around: Surroundings<'_>) -> Result<ClippedCount> {
         let load = self.load;
-        let around = Surroundings {
-            time,
-            load,
-            rest: None,
-        };
+        let around = Surroundings { load, ..around };
         let run = self.model.run_in(state, self.input, around, self.output);
         run.map_err(|error| error.in_lane(self.number))
     }

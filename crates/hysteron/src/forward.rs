@@ -2,7 +2,6 @@
 
 use crate::error::Result;
 use crate::evaluate::{begin, compare, over_all};
-use crate::identify::with_rest;
 use crate::model::{FitSummary, Model, Start};
 use crate::recording::Recording;
 use crate::series::Errors;
@@ -51,7 +50,7 @@ pub fn forward(
     for recording in recordings {
         recording.check()?;
         let recording = &*model.delay().of_recording(recording);
-        let recording = &*with_rest(model, recording)?;
+        let recording = &*model.rested_from(start, recording)?;
         let (mut state, _) = begin(model, recording, start)?;
         let (output, _) = model.run_over(&mut state, recording)?;
         errors.push(compare(&recording.output, &output));

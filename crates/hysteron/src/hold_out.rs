@@ -4,7 +4,6 @@ use crate::advice::Advice;
 use crate::error::{Error, Result};
 use crate::identify::Fit;
 use crate::identify::kept::tell_errors;
-use crate::identify::with_rest;
 use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Recording, Split, split_each, split_ends};
 use crate::remedy::{Remedy, Setting};
@@ -36,7 +35,7 @@ pub(crate) const PART: &str = "hold_out_part";
 /// The errors of one simple predictor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RivalErrors {
-    /// Its name, see [`RivalKind::name`].
+    /// Its name, such as `straight line` ([`RivalKind::name`](crate::RivalKind::name)).
     pub name: &'static str,
     /// Its errors over the same samples.
     #[serde(flatten)]
@@ -232,7 +231,7 @@ fn simulated(model: &Model, recordings: &[&Recording]) -> Result<(Vec<f64>, Vec<
     let (mut measured, mut modelled) = (Vec::new(), Vec::new());
     for recording in recordings {
         let recording = &*model.delay().of_recording(recording);
-        let recording = with_rest(model, recording)?;
+        let recording = model.rested(recording)?;
         measured.extend_from_slice(&recording.output);
         modelled.extend(model.run_over(&mut model.start(), &recording)?.0);
     }

@@ -46,6 +46,7 @@ fn run(source: &Path, out: &Path, how: How) -> (Option<String>, Option<Vec<u8>>)
                 let what = Simulate {
                     input: "x",
                     around,
+                    rest: None,
                     band: None,
                 };
                 simulate_table(&model, model.start(), &mut table, what, out, |_| {})?;

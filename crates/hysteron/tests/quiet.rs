@@ -25,6 +25,7 @@ fn copied(source: &Path, out: &Path) -> hysteron::Result<()> {
     let what = Simulate {
         input: "x",
         around: Default::default(),
+        rest: None,
         band: None,
     };
     let writer = TableWriter::create(Some(out.into()))?;

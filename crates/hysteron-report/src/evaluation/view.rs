@@ -8,22 +8,16 @@ use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Valida
 use hysteron::{Model, Origin, Recording, Verdict, one_after_the_other};
 use std::borrow::Cow;
 
-/// All recordings, one after the other, behind the thermal body of the model, which began with
-/// these `rests`.
+/// All recordings, one after the other, behind the thermal body of the model.
 fn behind_body<'a>(
     model: &Model,
     recordings: &'a [Recording],
-    rests: &[Option<f64>],
 ) -> Result<Cow<'a, Recording>, ReportError> {
     if model.thermal.is_none() {
         return one_after_the_other(recordings).ok_or(ReportError::NoRecording);
     }
-    let rests = rests.iter().copied().chain(std::iter::repeat(None));
-    let behind = recordings.iter().zip(rests).map(|(recording, rest)| {
-        let recording = Recording {
-            rest,
-            ..recording.clone()
-        };
+    let behind = recordings.iter().map(|recording| {
+        let recording = model.rested(recording)?;
         Ok(model.behind_body(&recording)?.into_owned())
     });
     let behind: Vec<Recording> = behind.collect::<Result<_, ReportError>>()?;
@@ -68,7 +62,7 @@ impl<'a> View<'a> {
         recordings: &'a [Recording],
         (evaluation, verdict): (&'a Evaluation, Option<&'a Verdict>),
     ) -> Result<Self, ReportError> {
-        let recording = behind_body(model, recordings, &evaluation.rests)?;
+        let recording = behind_body(model, recordings)?;
         let ends = recordings.iter().scan(0, |end, recording| {
             *end += recording.len();
             Some(*end)

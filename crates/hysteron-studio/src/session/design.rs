@@ -78,7 +78,8 @@ impl Session {
         for file in files.filter_map(|file| self.file(*file).ok()) {
             // Where there is a thermal body, the plane is that of the temperature.
             for recording in file.parts()?.all() {
-                recorded.push(fitted.model.behind_body(recording)?.input.clone());
+                let recording = fitted.model.rested(recording)?;
+                recorded.push(fitted.model.behind_body(&recording)?.input.clone());
             }
         }
         let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();

@@ -140,6 +140,7 @@ impl Session {
             "the band of a model",
         )?;
         let of = |recording: &Recording| {
+            let recording = &*model.rested(recording)?;
             let around = Surroundings::from_recording(&model, recording);
             let (low, high) = model.band_in(&recording.input, around)?;
             let half = low.iter().zip(high).map(|(low, high)| 0.5 * (high - low));

@@ -98,9 +98,21 @@ impl Session {
         let after = after.map(|time| nearest(shown, time));
         let (mut begin, mut first) = (0, None);
         for recording in parts.all() {
+            let recording = &*model.rested(recording)?;
             let around = Surroundings::from_recording(&model, recording);
             let acting = model.acting(&recording.input, around)?;
             let mut state = model.start();
+            if let Some(input) = around.rest {
+                let load = around.load.map(|load| load[0]);
+                model.step(
+                    &mut state,
+                    Sample {
+                        input,
+                        dt: None,
+                        load,
+                    },
+                )?;
+            }
             let mut was = None;
             for (n, input) in acting.iter().enumerate() {
                 let sample = Sample {

@@ -175,12 +175,13 @@ impl Session {
         };
         let rows = from..count;
         let model = &fitted.model;
+        let recording = &*model.rested(recording)?;
         let around = Surroundings::from_recording(model, recording);
         let acting = model.acting(&recording.input, around)?;
         let around = Surroundings {
             time: around.time.map(|time| &time[rows.clone()]),
             load: around.load.map(|load| &load[rows.clone()]),
-            rest: None,
+            rest: around.rest.filter(|_| from == begin),
         };
         model.run_in(
             &mut state,

@@ -50,7 +50,6 @@ pub use unknown_load::ShiftFound;
 pub use window::Window;
 
 use crate::error::{Error, Result};
-use crate::identify::with_rests;
 use crate::model::{Model, Start};
 use crate::progress::Progress;
 use crate::recording::{Recording, no_recordings, one_after_the_other};
@@ -58,6 +57,7 @@ use begun::{Begun, run_from};
 use hysteron_core::Outcome;
 use learned::{Learned, covered};
 use session::session;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Runs an estimator over a recording. For each sample it returns the expected output before it
@@ -96,7 +96,11 @@ pub fn adapt(
     recordings.iter().try_for_each(Recording::check)?;
     recordings.iter().try_for_each(|r| model.check_units(r))?;
     let recordings = &*model.delay().of_recordings(recordings);
-    let recordings = &*with_rests(model, recordings)?;
+    let rested = match options.learner {
+        Learner::Load => Cow::Borrowed(recordings),
+        _ => model.all_rested(recordings)?,
+    };
+    let recordings = &*rested;
     let joined = one_after_the_other(recordings).ok_or_else(no_recordings)?;
     let mut adapted = match options.learner {
         Learner::Load => unknown_load::adapt(model, (recordings, &joined), options, progress)?,

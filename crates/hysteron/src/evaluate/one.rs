@@ -1,7 +1,7 @@
 //! Forward and inverse tests of a model on one recording.
 
 use crate::error::Result;
-use crate::identify::{find_rest, find_start, with_rest};
+use crate::identify::{find_rest, find_start};
 use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State, Surroundings};
 use crate::recording::Recording;
 use crate::series::Errors;
@@ -85,7 +85,7 @@ pub(super) fn keeping(
     recording.check()?;
     model.check_units(recording)?;
     let recording = &*model.delay().of_recording(recording);
-    let recording = &*with_rest(model, recording)?;
+    let recording = &*model.rested_from(start, recording)?;
     let (begin, estimated_from) = begin(model, recording, start)?;
     let (output_model, clipped) = model.run_over(&mut begin.clone(), recording)?;
     let forward = compare(&recording.output, &output_model);

@@ -10,7 +10,6 @@ use crate::identify::kept;
 use crate::identify::options::{Choice, Dynamics, FitOptions, LoadLaw, Spacing, Thermal};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
-use crate::identify::rest::with_rests;
 use crate::identify::stages::{self, Asked, SpacingShape};
 use crate::identify::weights::problem::check_options;
 use crate::identify::weights::room::check_columns;
@@ -445,7 +444,7 @@ impl<'a> Fit<'a> {
         let behind = match self.is_heated() {
             false => mended,
             true => {
-                let mended = with_rests(&at_once, &mended)?;
+                let mended = at_once.all_rested(&mended)?;
                 let behind = mended.iter().map(|r| at_once.behind_body(r));
                 Cow::Owned(behind.map(|r| Ok(r?.into_owned())).collect::<Result<_>>()?)
             }

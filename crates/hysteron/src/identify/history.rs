@@ -58,7 +58,7 @@ pub(crate) fn find_start(model: &Model, recording: &Recording) -> Result<(Fitted
 }
 
 /// Number of samples until the input has covered nine tenths of its range.
-pub(super) fn beginning(input: &[f64]) -> usize {
+pub(in crate::identify) fn beginning(input: &[f64]) -> usize {
     let (low, high) = range(input);
     let (mut least, mut most) = (input[0], input[0]);
     let covers = |x: &f64| {

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::changed::on_grid;
 use crate::identify::history::{self, find_start};
 use crate::identify::options::FitOptions;
-use crate::identify::rest::{after, with_rests};
+use crate::identify::rest::after;
 use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::recording::{Recording, one_speed};
 use crate::series::{Errors, different_branches};
@@ -45,7 +45,7 @@ pub(super) fn with_start(
         }
         Start::Unknown => {}
     }
-    let (found, samples) = find_start(&model, &recordings[0])?;
+    let (found, samples) = find_start(&model, &*model.rested(&recordings[0])?)?;
     let mut best = model.with_start(Some(found))?;
     // With one recording, the search has had both as candidates.
     if recordings.len() > 1 {
@@ -77,7 +77,7 @@ const WORSE: f64 = 0.01;
 /// begin there, as the actuator did. Others that begin elsewhere may lead to other branches; if all
 /// then err more by this share, the start stays as it was.
 fn at_first(model: Model, recordings: &[Recording]) -> Result<Model> {
-    let first = recordings[0].part(0..1);
+    let first = model.rested(&recordings[0])?.part(0..1);
     let around = Surroundings::from_recording(&model, &first);
     let seen = model.seen(&first.input, around)?;
     let mut state = model.start();
@@ -92,7 +92,7 @@ fn at_first(model: Model, recordings: &[Recording]) -> Result<Model> {
 /// The sum of the squared errors from the start that the model keeps.
 fn squares(model: &Model, recordings: &[Recording]) -> Result<f64> {
     let mut sum = 0.0;
-    for recording in &*with_rests(model, recordings)? {
+    for recording in &*model.all_rested(recordings)? {
         sum += history::squares(model, model.start(), recording)?;
     }
     Ok(sum)
@@ -159,7 +159,7 @@ pub(crate) fn tell_errors(
     let outliers = model.fit.iter().flat_map(|fit| &fit.outliers);
     let left_out: HashSet<(usize, usize)> = outliers.map(|o| (o.recording, o.sample)).collect();
     let (mut measured, mut modelled, mut before) = (Vec::new(), Vec::new(), 0);
-    let rested = with_rests(model, recordings)?;
+    let rested = model.all_rested(recordings)?;
     let rests: Vec<Option<f64>> = rested.iter().map(|one| one.rest).collect();
     for (n, recording) in rested.iter().enumerate() {
         let (output, _) = model.run_over(&mut model.start(), recording)?;
@@ -175,9 +175,10 @@ pub(crate) fn tell_errors(
         fit.rmse = errors.rmse;
         fit.max_abs = errors.max_abs;
         fit.nrmse_percent = errors.nrmse_percent.unwrap_or_default();
-        if rests.iter().any(Option::is_some) {
-            fit.other.insert(RESTS.into(), json!(rests));
-        }
+        match model.thermal.is_some() && rests.iter().any(Option::is_some) {
+            true => fit.other.insert(RESTS.into(), json!(rests)),
+            false => fit.other.remove(RESTS),
+        };
     }
     Ok(())
 }

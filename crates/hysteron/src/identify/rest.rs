@@ -7,9 +7,8 @@ use crate::error::Result;
 use crate::identify::history::{beginning, squares};
 use crate::identify::initial::Initial;
 use crate::model::{Model, State, Surroundings};
-use crate::recording::{Quantity, Recording};
+use crate::recording::Recording;
 use crate::series::range;
-use std::borrow::Cow;
 
 /// Candidates for an input, evenly over the range.
 const CANDIDATES: usize = 12;
@@ -71,103 +70,24 @@ pub(super) fn polished(
     Ok(shape(x))
 }
 
-/// A body was at rest with another drive before a recording if the squared error at its beginning
-/// is at most this part of that without it.
-const CLEAR: f64 = 0.5;
+/// A number and its error.
+type Rated = (f64, f64);
 
-/// Fewer samples tell nothing of one number.
-const FEWEST: usize = 8;
-
-/// So many time constants are the beginning of a recording behind a body. After them, 5 % are left
-/// of where it began.
-const BEGINNING: f64 = 3.0;
-
-/// The recording with the drive at which the body of `model` was at rest before it, where the first
-/// drive clearly was not it: the wire was warm, or the drive began with the recording.
+/// The number in a range with the least `error`, and that error.
 ///
 /// # Errors
-/// As [`Model::run_in`].
-pub(crate) fn with_rest<'r>(model: &Model, recording: &'r Recording) -> Result<Cow<'r, Recording>> {
-    let found = match recording.rest {
-        Some(_) => None,
-        None => rest_before(model, recording)?,
-    };
-    Ok(match found {
-        None => Cow::Borrowed(recording),
-        rest => Cow::Owned(Recording {
-            rest,
-            ..recording.clone()
-        }),
-    })
-}
-
-/// As [`with_rest`], of all recordings.
-pub(crate) fn with_rests<'r>(
-    model: &Model,
-    recordings: &'r [Recording],
-) -> Result<Cow<'r, [Recording]>> {
-    if model.thermal.is_none() {
-        return Ok(Cow::Borrowed(recordings));
-    }
-    let each = recordings.iter();
-    let each = each.map(|recording| Ok(with_rest(model, recording)?.into_owned()));
-    Ok(Cow::Owned(each.collect::<Result<_>>()?))
-}
-
-/// What is said of the drives at which a body was at rest; `None` where each was the first one.
-#[must_use]
-pub fn rested_words(rests: &[Option<f64>], input: &Quantity) -> Option<String> {
-    let found = rests.iter().enumerate();
-    let found = found.filter_map(|(n, rest)| Some((n, input.text((*rest)?))));
-    let found: Vec<String> = match rests {
-        [_] => found.map(|(_, rest)| rest).collect(),
-        _ => found
-            .map(|(n, rest)| format!("{rest} before recording {}", n + 1))
-            .collect(),
-    };
-    (!found.is_empty()).then(|| {
-        let found = found.join(", ");
-        format!(
-            "the body did not begin at rest with its first drive: it was at rest with {found}, \
-             found from the beginning; to simulate, give this rest"
-        )
-    })
-}
-
-/// The drive of [`with_rest`]; `None` for the first one, and for a model without a body.
-fn rest_before(model: &Model, recording: &Recording) -> Result<Option<f64>> {
-    let (Some(body), Some(time)) = (model.thermal, &recording.time) else {
-        return Ok(None);
-    };
-    let end = time[0] + BEGINNING * body.tau_heating.max(body.tau_cooling);
-    let samples = time.partition_point(|t| *t <= end);
-    if samples < FEWEST {
-        return Ok(None);
-    }
-    let mut head = recording.part(0..samples);
-    let mut error = |rest| {
-        head.rest = rest;
-        squares(model, model.start(), &head)
-    };
-    let none = error(None)?;
-    let (low, high) = drives(model.drive_range(), &recording.input);
+/// Those of `error`.
+pub(super) fn least(
+    (low, high): (f64, f64),
+    mut error: impl FnMut(f64) -> Result<f64>,
+) -> Result<Rated> {
     let step = (high - low) / CANDIDATES as f64;
-    let mut error = |x| error(Some(x));
     let mut best = (low, f64::INFINITY);
     for n in 0..=CANDIDATES {
         best = lesser(best, low + step * n as f64, &mut error)?;
     }
-    let (x, least) = refined(best, step, (low, high), error)?;
-    Ok((least < CLEAR * none).then_some(x))
+    refined(best, step, (low, high), error)
 }
-
-/// The drives that a body may have been at rest with: none at all is among them.
-fn drives((low, high): (f64, f64), input: &[f64]) -> (f64, f64) {
-    let (least, most) = range(input);
-    (low.min(least).min(0.0), high.max(most).max(0.0))
-}
-
-type Rated = (f64, f64);
 
 fn lesser(best: Rated, x: f64, mut error: impl FnMut(f64) -> Result<f64>) -> Result<Rated> {
     let other = error(x)?;

@@ -72,7 +72,9 @@ impl Model {
             let remedy = Remedy::new("fit it again with {}", [bootstrap]);
             return Err(Error::Fit(what.into()).remedied(remedy));
         };
-        let (mut state, mut states) = (state.clone(), bounds.states(state)?);
+        let mut state = state.clone();
+        self.rest_at(&mut state, surroundings)?;
+        let mut states = bounds.states(&state)?;
         let mut ends = (Vec::new(), Vec::new());
         for (index, sample) in surroundings.samples(self, input)? {
             let step = self.step(&mut state, sample);

@@ -38,8 +38,11 @@ impl FitSummary {
     pub fn change(&self) -> Option<Change> {
         let known: Change = serde_json::from_value(self.other.get(ENTRY)?.clone()).ok()?;
         // A file of somebody else may say anything.
-        let is_one = |number: f64| number.is_finite() && number > 0.0;
-        (is_one(known.gain) && is_one(known.shift)).then_some(known)
+        let can_be = |number: &f64| (1e-6..=1e3).contains(number);
+        [known.gain, known.shift]
+            .iter()
+            .all(can_be)
+            .then_some(known)
     }
 
     pub(crate) fn tell_change(&mut self, change: Change) {

@@ -352,6 +352,7 @@ impl Inverse<'_> {
         if targets.is_empty() {
             return Ok(());
         }
+        self.model.rest_at(state, surroundings)?;
         if surroundings.load.is_none() && self.has_operators_alone() {
             for ((_, sample), heading) in samples {
                 let target = Target {

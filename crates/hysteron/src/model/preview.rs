@@ -236,6 +236,7 @@ impl Inverse<'_> {
             return self.series_in(state, targets, policy, tolerance, surroundings);
         }
         let inner = self.model.without_body();
+        self.model.rest_at(state, surroundings)?;
         let ahead = state.clone();
         let mut preview = Preview::new(self.model, &inner, self.drive, seconds, ahead)?;
         let mut headings = policy.headings(targets, tolerance).into_iter();

@@ -70,7 +70,14 @@ impl Model {
         }
         match input.iter().position(|x| !x.is_finite()) {
             Some(index) => Err(CoreError::InputNotFinite { index }.into()),
-            None => Ok(self.delay().acting(input, surroundings.time)),
+            None => {
+                let acting = self.delay().acting(input, surroundings.time);
+                Ok(after_rest(
+                    acting,
+                    self.delay().on(surroundings.time),
+                    surroundings.rest,
+                ))
+            }
         }
     }
 
@@ -188,7 +195,7 @@ impl Model {
 
     /// Moves `state` to where the series begin, at rest with the input before them, if there was
     /// another.
-    fn rest_at(&self, state: &mut State, surroundings: Surroundings<'_>) -> Result<()> {
+    pub(crate) fn rest_at(&self, state: &mut State, surroundings: Surroundings<'_>) -> Result<()> {
         let Some(input) = surroundings.rest else {
             return Ok(());
         };
@@ -218,13 +225,13 @@ impl Model {
 }
 
 impl<'a> Surroundings<'a> {
-    /// Time and load of a recording, as far as `model` needs them.
+    /// Time, load and rest of a recording, as far as `model` needs them.
     #[must_use]
     pub fn from_recording(model: &Model, recording: &'a Recording) -> Self {
         Self {
             time: recording.time.as_deref().filter(|_| model.reads_time()),
             load: recording.load.as_deref().filter(|_| model.load.is_some()),
-            rest: recording.rest,
+            rest: recording.rest.filter(|_| model.thermal.is_some()),
         }
     }
 
@@ -255,6 +262,17 @@ impl<'a> Surroundings<'a> {
             (n, Sample { input, dt, load })
         }))
     }
+}
+
+/// The inputs that act, of which the first `late` are still the rest.
+fn after_rest(acting: Cow<'_, [f64]>, late: usize, rest: Option<f64>) -> Cow<'_, [f64]> {
+    let Some(rest) = rest.filter(|_| late > 0) else {
+        return acting;
+    };
+    let mut acting = acting.into_owned();
+    let early = late.min(acting.len());
+    acting[..early].fill(rest);
+    Cow::Owned(acting)
 }
 
 /// The same error with the index of the sample, where it is one of a sample.

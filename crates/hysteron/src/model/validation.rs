@@ -54,7 +54,7 @@ pub struct Score {
 /// The error of a simple predictor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RivalScore {
-    /// Its name, see [`RivalKind::name`](crate::RivalKind::name).
+    /// Its name, such as `straight line` ([`RivalKind::name`](crate::RivalKind::name)).
     pub name: String,
     /// Root mean squared error on what was left out, in percent of the measured range.
     pub nrmse_percent: f64,

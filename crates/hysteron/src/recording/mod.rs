@@ -299,6 +299,10 @@ impl Recording {
                 return Err(fault(name, problem));
             }
         }
+        if let Some(rest) = self.rest.filter(|x| !(x.is_finite() && x.abs() <= LARGEST)) {
+            let problem = format!("{rest} before the first sample is no input that can be");
+            return Err(fault(&self.input_quantity.name, problem));
+        }
         let goes_back = |pair: &[f64]| pair[1] < pair[0];
         match self
             .time

@@ -184,7 +184,11 @@ impl Recording {
             let parts = spans().map(|(samples, _)| &series[samples]);
             parts.collect::<Vec<_>>().concat()
         };
-        Some(self.picked(pick))
+        let first = kept.iter().next().is_some_and(|(_, is_kept)| is_kept);
+        Some(Self {
+            rest: self.rest.filter(|_| first),
+            ..self.picked(pick)
+        })
     }
 
     /// Only these samples.

@@ -41,6 +41,7 @@ fn simulate(source: &Path, out: &Path) -> hysteron::Result<()> {
     let what = Simulate {
         input: "x",
         around: Around::default(),
+        rest: None,
         band: None,
     };
     let model = model();

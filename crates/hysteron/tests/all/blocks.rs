@@ -165,6 +165,7 @@ fn in_blocks(path: &Path, to: &Path, model: &Model, invert: Option<Policy>) -> O
                 let what = Simulate {
                     input: "x",
                     around,
+                    rest: None,
                     band: None,
                 };
                 simulate_table(model, state, &mut table, what, out, |_| {})?;

@@ -158,6 +158,7 @@ fn every_column_goes_over_as_it_is() {
                 let what = Simulate {
                     input: "x",
                     around: Default::default(),
+                    rest: None,
                     band: None,
                 };
                 simulate_table(
@@ -258,6 +259,7 @@ fn a_column_that_is_there_already_is_refused() {
     let what = Simulate {
         input: "x",
         around: Default::default(),
+        rest: None,
         band: None,
     };
     let said = simulate_table(
@@ -285,6 +287,7 @@ fn csv_becomes_parquet_with_the_kinds_that_its_cells_have() {
     let what = Simulate {
         input: "x",
         around: Default::default(),
+        rest: None,
         band: None,
     };
     simulate_table(
@@ -327,6 +330,7 @@ fn simulated(source: &Path, out: &Path) -> hysteron::Result<()> {
     let what = Simulate {
         input: "x",
         around: Default::default(),
+        rest: None,
         band: None,
     };
     let writer = TableWriter::create(Some(out.into()))?;

@@ -6,7 +6,7 @@ use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
 use crate::error::Result;
-use crate::model::{Band, Model, OperatorState, State, UnderWay};
+use crate::model::{Band, Model, OperatorState, Sample, State, UnderWay};
 
 /// The columns and options of a simulation.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +15,8 @@ pub struct Simulate<'a> {
     pub input: &'a str,
     /// Columns of time and load.
     pub around: Around<'a>,
+    /// The input long before the first row, at which all was at rest; `None` for that of the first.
+    pub rest: Option<f64>,
     /// The band, for the columns `output_low` and `output_high`; `None` for no band.
     pub band: Option<&'a Band>,
 }
@@ -50,6 +52,8 @@ pub fn simulate_table(
         begin: state.clone(),
         state,
         samples,
+        rest: what.rest,
+        is_rested: what.rest.is_none(),
         band,
         under_way: None,
         counts: Counts::default(),
@@ -63,6 +67,9 @@ struct Simulating<'a> {
     begin: State,
     state: State,
     samples: Samples,
+    rest: Option<f64>,
+    /// Whether the state has been at that rest.
+    is_rested: bool,
     band: Option<(&'a Band, Vec<OperatorState>)>,
     /// The inputs of the dead time; `None` before the first row, whose clock tells how many.
     under_way: Option<UnderWay<f64>>,
@@ -73,7 +80,7 @@ impl Work for Simulating<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
         let delay = self.model.delay();
         let plain = self.model.is_plain() && self.samples.are_plain() && delay.is_none();
-        if plain && self.band.is_none() {
+        if plain && self.band.is_none() && self.is_rested {
             let input = &block.numbers()[self.samples.value];
             let outputs = &mut cells.numbers[0];
             outputs.resize(input.len(), 0.0);
@@ -93,8 +100,25 @@ impl Work for Simulating<'_> {
                 }
                 self.under_way = None;
                 self.counts.anew += 1;
+                self.is_rested = self.rest.is_none();
             }
-            let late = || UnderWay::new(delay.on(self.samples.time(block)));
+            if let Some(rest) = self.rest.filter(|_| !self.is_rested) {
+                let before = Sample {
+                    input: rest,
+                    dt: None,
+                    load: sample.load,
+                };
+                let step = self.model.step(&mut self.state, before);
+                step.map_err(|error| self.samples.fault(block, row, &error))?;
+                self.is_rested = true;
+            }
+            let late = || {
+                let mut late = UnderWay::new(delay.on(self.samples.time(block)));
+                if let Some(rest) = self.rest {
+                    late.push(rest);
+                }
+                late
+            };
             sample.input = self.under_way.get_or_insert_with(late).push(sample.input);
             let step = self.model.step(&mut self.state, sample);
             let step = step.map_err(|error| self.samples.fault(block, row, &error))?;

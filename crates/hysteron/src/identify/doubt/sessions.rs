@@ -4,7 +4,6 @@ use crate::error::Result;
 use crate::identify::doubt::calibrate::{missing, quantile};
 use crate::identify::doubt::change::change;
 use crate::identify::history::find_start;
-use crate::identify::rest::with_rests;
 use crate::model::{INTERVAL, Model, SeenFile, Surroundings};
 use crate::recording::Recording;
 use crate::series::{branch_spans, usual_tolerance};
@@ -16,8 +15,10 @@ use crate::series::{branch_spans, usual_tolerance};
 /// # Errors
 /// As [`crate::evaluate_from`].
 pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
-    let change = change(model, &with_rests(model, repeats)?)?;
-    if let (Some(fit), Some(change)) = (&mut model.fit, change) {
+    let repeats = &*model.all_rested(repeats)?;
+    if let Some(change) = change(model, repeats)?
+        && let Some(fit) = &mut model.fit
+    {
         fit.tell_change(change);
     }
     let Some(band) = model.band()? else {
@@ -25,7 +26,7 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
     };
     let noise = confidence(model).map_or(0.0, |found| found.noise);
     let (mut values, mut units) = (Vec::new(), 0);
-    for repeat in &*with_rests(model, repeats)? {
+    for repeat in repeats {
         let (start, _) = find_start(model, repeat)?;
         let begin = model.restore(&start.turning_points, start.input)?;
         let around = Surroundings::from_recording(model, repeat);

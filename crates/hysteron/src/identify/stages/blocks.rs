@@ -8,7 +8,7 @@ use crate::recording::Recording;
 pub(in crate::identify) const BLOCKS: usize = 6;
 
 /// A stage has to reduce the error on blocks left out by this share. Blocks of one recording are
-/// less different than recordings are: on a valve, a slow term that gained 7 % on blocks left out lost
+/// less different than recordings are: on a valve, creep that gained 7 % on blocks left out lost
 /// 13 % on a recording at another frequency.
 pub(in crate::identify) const WORTH: f64 = 0.1;
 

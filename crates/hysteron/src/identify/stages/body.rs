@@ -99,8 +99,8 @@ pub(in crate::identify) fn may_heat(
     let thinned: Vec<Recording> = recordings.iter().map(|r| search.thinned(r)).collect();
     let cold = fit_weights(&thinned, &search.options, Progress::NONE)?;
     let most = most * cold.fit.map_or(0.0, |fit| fit.rmse);
-    let ((at_first, _), (rested, _)) = search.look()?;
-    Ok(at_first <= most || rested <= CLEAR * most)
+    let look = search.look()?;
+    Ok(look.at_first <= most || look.rested <= CLEAR * most)
 }
 
 pub(super) struct Search<'a> {

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::lost::fill;
 
-/// A lag alone can be judged by shorter blocks than slower stages. The error of long ones is that of loops
+/// A lag alone can be judged by shorter blocks than creep. The error of long ones is that of loops
 /// that the others do not have, and it hides a lag.
 const SHORT_BLOCKS: usize = 24;
 

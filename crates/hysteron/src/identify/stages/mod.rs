@@ -45,7 +45,7 @@ use std::borrow::Cow;
 
 /// The entry of a fit's record for a ring that was found.
 pub(crate) const RING: &str = "ring";
-/// The entry for what comes late behind the operators and was looked for.
+/// The entry for creep and lag that were looked for.
 pub(crate) const AFTER: &str = "after";
 
 /// What a fit identifies besides the weights.
@@ -77,21 +77,20 @@ pub(crate) fn fit(
     let mut notes = std::collections::BTreeMap::new();
     let mut seen: Cow<'_, [Recording]> = Cow::Borrowed(recordings);
     if asked.thermal != Thermal::None {
+        let given = Search::new(recordings, options, progress)?;
         let rested = warm::rested(recordings, options, progress)?;
         let (first_order, told_apart) = body::find(&rested, options, progress)?;
         let mut heated = Heated::unbound(first_order);
-        let rested = Search::new(&rested, options, progress)?.rested(heated)?;
-        let recordings = &rested[..];
+        let mut rested = given.rested(rested, heated)?;
         let mut note = json!({"told_apart": told_apart});
         if asked.thermal == Thermal::Auto
             && recordings.iter().all(|recording| recording.load.is_none())
-            && let Some(binding) =
-                latent::find(recordings, options, (heated, told_apart), progress)?
+            && let Some(binding) = latent::find(&rested, options, (heated, told_apart), progress)?
         {
             heated = binding.heated;
             note["latent"] = json!(binding.report);
+            rested = given.rested(rested, heated)?;
         }
-        let rested = Search::new(&rested, options, progress)?.rested(heated)?;
         seen = Cow::Owned(heated.behind(&rested)?);
         found.thermal = Some(heated.body);
         found.latent = heated.per_output.abs();

@@ -194,7 +194,10 @@ impl<'a> Search<'a> {
         let mut found = Vec::new();
         for count in counts {
             for given in &lags {
-                let mut best = self.creep(*count, *given)?;
+                let mut best = match count {
+                    0 => self.lagging(*given)?,
+                    _ => self.creep(*count, *given)?,
+                };
                 if lag == Choice::Auto && *given > 0.0 {
                     self.refine_lag(&mut best)?;
                 }
@@ -210,7 +213,7 @@ impl<'a> Search<'a> {
         let longest = SLOWEST * self.longest;
         let mut best: Option<(After, f64)> = None;
         for lag in lags.take_while(|lag| *lag <= longest) {
-            let next = self.creep(0, lag)?;
+            let next = self.lagging(lag)?;
             if best.as_ref().is_none_or(|best| next.1 < best.1) {
                 best = Some(next);
             }
@@ -225,9 +228,6 @@ impl<'a> Search<'a> {
 
     /// The best creep of `count` terms with this lag, and its error on what is fitted.
     pub(super) fn creep(&mut self, count: usize, lag: f64) -> Result<(After, f64)> {
-        if count == 0 {
-            return self.lagging(lag);
-        }
         let tried = |coefficient: f64| match count {
             // The time constant of a single term is searched too.
             1 => {

@@ -63,7 +63,7 @@ pub(super) fn forward(after: &After, recordings: &[Recording], sums: &[f64]) -> 
 
 /// A recording without time, for options that ask for such a stage.
 pub(super) fn no_time() -> Error {
-    let what = "what comes late behind the operators depends on time, and the recording has none";
+    let what = "creep, lag and ring depend on time, and the recording has none";
     let remedy = Remedy::new("name its column ({})", [Setting::any("time")]);
     Error::Fit(what.into()).remedied(remedy)
 }

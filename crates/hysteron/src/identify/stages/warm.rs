@@ -6,7 +6,6 @@
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
-use crate::identify::rest::with_rests;
 use crate::identify::stages::body::{GRID, LOOK, Search};
 use crate::identify::stages::latent::Heated;
 use crate::identify::stages::nelder_mead::minimise;
@@ -24,15 +23,25 @@ const EDGE: f64 = 0.3;
 const TOLERANCE: f64 = 0.01;
 const STEPS: usize = 60;
 
-/// Rests have to reduce the error of the fit to this part: whatever a model does wrong at the
-/// beginning, they make a little better.
+/// A rest has to reduce the error beside a common time constant to this part: whatever a model does
+/// wrong at the beginning, it makes a little better.
 const WORTH: f64 = 0.9;
 
-/// Weights and rests are found in turn, so often at most.
+/// Weights and rests are found in turn, so often at most, and as long as the error falls to this part.
 const ROUNDS: usize = 6;
+const FALLS: f64 = 0.9;
 
-/// A common time constant as its logarithm, and a common rest as a share of the range of drives.
-type Point = (f64, Option<f64>);
+/// What a first look found.
+pub(super) struct Look {
+    /// The error at rest with the first drives, and with the best of a few rests for all recordings.
+    pub(super) at_first: f64,
+    pub(super) rested: f64,
+    /// The logarithms of the common time constants there.
+    tau_at_first: f64,
+    tau_rested: f64,
+    /// The best rest as a share of the range of drives; `None` for the first drives.
+    share: Option<f64>,
+}
 
 /// The recordings with the rests that are found beside a common time constant, on a coarse plane.
 ///
@@ -48,21 +57,22 @@ pub(super) fn rested(
         ..options.clone()
     };
     let search = Search::new(recordings, &coarse, progress)?;
-    let ((_, at_first), (_, (mut tau, mut share))) = search.look()?;
-    if let Some(first) = share {
-        let resting = search.resting(None);
-        let alone = |tau: &[f64; 1]| search.of(&resting).rmse_inside(tau, common);
-        let ([at], without) = minimise([at_first], EDGE, TOLERANCE, STEPS, alone)?;
-        let value = |[tau, share]: &[f64; 2]| match (0.0..=1.0).contains(share) {
+    let look = search.look()?;
+    let (mut tau, mut rest) = (look.tau_at_first, None);
+    if let Some(share) = look.share {
+        let alone = |tau: &[f64; 1]| search.rmse_inside(tau, common);
+        let ([at_first], without) = minimise([tau], EDGE, TOLERANCE, STEPS, alone)?;
+        let beside = |[tau, share]: &[f64; 2]| match (0.0..=1.0).contains(share) {
             true => search
-                .of(&search.resting(Some(*share)))
+                .of(&search.resting(*share))
                 .rmse_inside(&[*tau], common),
             false => Ok(f64::INFINITY),
         };
-        let ([beside, rest], with) = minimise([tau, first], EDGE, TOLERANCE, STEPS, value)?;
-        (tau, share) = match with <= WORTH * without {
-            true => (beside, Some(rest)),
-            false => (at, None),
+        let start = [look.tau_rested, share];
+        let ([rested, share], with) = minimise(start, EDGE, TOLERANCE, STEPS, beside)?;
+        (tau, rest) = match with <= WORTH * without {
+            true => (rested, Some(share)),
+            false => (at_first, None),
         };
     }
     let body = FirstOrder {
@@ -70,59 +80,77 @@ pub(super) fn rested(
         tau_cooling: tau.exp(),
         ..FirstOrder::default()
     };
-    let resting = search.resting(share);
-    search.of(&resting).rested(Heated::unbound(body))
+    let begun = rest.map_or_else(|| recordings.to_vec(), |share| search.resting(share));
+    search.rested(begun, Heated::unbound(body))
 }
 
 impl Search<'_> {
-    /// The least error at a look with one time constant on a coarse grid, at rest with the first
-    /// drives, and its logarithm; and the least one, and where it is, there or with one of a few rests for all
-    /// recordings. What a wrong rest leaves takes longer than the body does, so the next shorter
-    /// time constant is looked at as well.
-    pub(super) fn look(&self) -> Result<((f64, f64), (f64, Point))> {
-        let resting = self.resting(None);
-        let ([first], at_first) = self.of(&resting).best_of_grid(common)?;
-        let mut best = (at_first, (first, None));
+    /// A look with a common time constant on a coarse grid, and there with a few rests. What a wrong
+    /// rest leaves takes longer than the body does, so the next shorter time constant is looked at as
+    /// well.
+    pub(super) fn look(&self) -> Result<Look> {
+        let ([tau], rmse) = self.best_of_grid(common)?;
+        let mut look = Look {
+            at_first: rmse,
+            rested: rmse,
+            tau_at_first: tau,
+            tau_rested: tau,
+            share: None,
+        };
         for share in LOOKS {
-            let resting = self.resting(Some(share));
+            let resting = self.resting(share);
             let search = self.of(&resting);
-            for tau in [first, first - GRID.ln()] {
+            for tau in [tau, tau - GRID.ln()] {
                 let rmse = search.rmse_inside(&[tau], common)?;
-                if rmse < best.0 {
-                    best = (rmse, (tau, Some(share)));
+                if rmse < look.rested {
+                    (look.rested, look.tau_rested, look.share) = (rmse, tau, Some(share));
                 }
             }
         }
-        Ok(((at_first, first), best))
+        Ok(look)
     }
 
-    /// The recordings with the rests with which a model behind the body errs least. Weights and
-    /// rests are found in turn, and each may make up for the other, so a later turn can be worse.
-    pub(super) fn rested(&self, heated: Heated) -> Result<Vec<Recording>> {
-        let (mut now, mut best) = (self.recordings.to_vec(), self.recordings.to_vec());
-        let mut least = f64::INFINITY;
-        for _ in 0..ROUNDS {
+    /// The recordings with the rests that models behind the body tell, beginning with those of
+    /// `begun`.
+    pub(super) fn rested(&self, begun: Vec<Recording>, heated: Heated) -> Result<Vec<Recording>> {
+        let (mut now, mut kept) = (begun, None::<(f64, Vec<Recording>)>);
+        for round in 0..ROUNDS {
             let model = self.of(&now).model(heated, None)?;
             let rmse = model.fit.as_ref().map_or(f64::INFINITY, |fit| fit.rmse);
-            if rmse >= WORTH * least {
+            if kept
+                .as_ref()
+                .is_some_and(|(least, _)| rmse >= FALLS * least)
+            {
                 break;
             }
-            (least, best) = (rmse, now.clone());
-            now.iter_mut().for_each(|one| one.rest = None);
-            now = with_rests(&model, &now)?.into_owned();
+            let told = model.all_rested(self.recordings)?.into_owned();
+            let is_told = now.iter().zip(&told).all(|(a, b)| a.rest == b.rest);
+            // The first rests are a guess. Those kept were told by a model.
+            if round > 0 || is_told {
+                kept = Some((rmse, now));
+            }
+            now = told;
+            if is_told {
+                break;
+            }
         }
-        Ok(best)
+        Ok(kept.map_or(now, |(_, told)| told))
     }
 
-    /// The recordings, all with a rest at this share of the range of drives.
-    fn resting(&self, share: Option<f64>) -> Vec<Recording> {
+    /// The recordings, all with a rest at this share of the range of drives, but for those whose rest
+    /// is known.
+    fn resting(&self, share: f64) -> Vec<Recording> {
         let ranges = self.recordings.iter().map(|one| range(&one.input));
         let (low, high) = ranges.fold((0.0, 0.0), |all: (f64, f64), one| {
             (all.0.min(one.0), all.1.max(one.1))
         });
-        let rest = share.map(|share| low + share * (high - low));
+        let rest = low + share * (high - low);
         let each = self.recordings.iter().cloned();
-        each.map(|one| Recording { rest, ..one }).collect()
+        let at = |one: Recording| Recording {
+            rest: one.rest.or(Some(rest)),
+            ..one
+        };
+        each.map(at).collect()
     }
 }
 
