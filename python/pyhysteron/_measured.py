@@ -260,14 +260,14 @@ class ThermalBody(_Result):
 
     Attributes
     ----------
-    ambient : float
-        Temperature at rest without a drive.
     gain : float
         Temperature at rest per unit of the drive; above zero.
     tau_heating : float
         Time constant of heating in seconds; above zero.
     tau_cooling : float
         Time constant of cooling in seconds; above zero.
+    ambient : float
+        Temperature at rest without a drive.
     """
 
     gain: float
@@ -470,12 +470,12 @@ class ModelSummary(_Result):
         The input at which the loop is widest.
     load : LoadSummary or None
         The load that the weights depend on, if they do.
-    delay_s : float or None
-        Dead time of the actuator, s; absent where there is none.
     stages : tuple of StageSummary
         Its stages, in the order of the signal.
     confidence : ConfidenceSummary or None
         Confidence in the weights, if the fit estimated it.
+    delay_s : float or None
+        Dead time of the actuator, s; absent where there is none.
     """
 
     levels: int

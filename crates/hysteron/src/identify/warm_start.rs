@@ -97,9 +97,8 @@ fn rest_before(model: &Model, start: Start, recording: &Recording) -> Result<Opt
         Ok(pairs.map(|(h, y)| y - h).collect())
     };
     let squares = |errors: &[f64]| errors.iter().map(|error| error * error).sum::<f64>();
-    // No drive at all is among them.
     let ((low, high), (bottom, top)) = (model.drive_range(), range(&recording.input));
-    let drives = (low.min(bottom).min(0.0), high.max(top).max(0.0));
+    let drives = with_none((low.min(bottom), high.max(top)));
     let (rest, least) = least(drives, |rest| Ok(squares(&errors(Some(rest), head)?)))?;
     let at_first = errors(None, more)?;
     if least >= CLEAR * squares(&at_first[..head]) {
@@ -111,6 +110,16 @@ fn rest_before(model: &Model, start: Start, recording: &Recording) -> Result<Opt
     let offset: Vec<f64> = at_first.iter().map(|error| error - mean).collect();
     let is_offset = squares(&offset) < CLEAR * squares(&errors(Some(rest), more)?);
     Ok((!is_offset).then_some(rest))
+}
+
+/// A range of drives with no drive at all, where that is near: of a drive that is counted from
+/// elsewhere, zero says nothing.
+pub(super) fn with_none((low, high): (f64, f64)) -> (f64, f64) {
+    let (least, most) = (low.min(0.0), high.max(0.0));
+    match most - least <= 2.0 * (high - low) {
+        true => (least, most),
+        false => (low, high),
+    }
 }
 
 /// What is said of the drives at which a body was at rest; `None` where each was the first one.

@@ -9,6 +9,7 @@ use crate::identify::options::FitOptions;
 use crate::identify::stages::body::{GRID, LOOK, Search};
 use crate::identify::stages::latent::Heated;
 use crate::identify::stages::nelder_mead::minimise;
+use crate::identify::warm_start::with_none;
 use crate::model::FirstOrder;
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -141,9 +142,8 @@ impl Search<'_> {
     /// is known.
     fn resting(&self, share: f64) -> Vec<Recording> {
         let ranges = self.recordings.iter().map(|one| range(&one.input));
-        let (low, high) = ranges.fold((0.0, 0.0), |all: (f64, f64), one| {
-            (all.0.min(one.0), all.1.max(one.1))
-        });
+        let all = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (low, high) = with_none(all.unwrap_or_default());
         let rest = low + share * (high - low);
         let each = self.recordings.iter().cloned();
         let at = |one: Recording| Recording {
