@@ -84,7 +84,9 @@ fn rest_before(model: &Model, start: Start, recording: &Recording) -> Result<Opt
     let samples = |seconds: f64| time.partition_point(|t| *t <= time[0] + seconds);
     let (head, more) = (samples(beginning), samples(LATER * beginning));
     let lacks_load = model.load.is_some() && recording.load.is_none();
-    if head < FEWEST || recording.rest.is_some() || lacks_load {
+    // Of a recording that is hardly more than its beginning, a rest would explain all.
+    let is_short = head < FEWEST || 2 * head > recording.len();
+    if is_short || recording.rest.is_some() || lacks_load {
         return Ok(None);
     }
     let errors = |rest, samples| -> Result<Vec<f64>> {
