@@ -4,8 +4,8 @@
 //! solves the least-squares problem. First `delay` finds the dead time and `outliers` wrong
 //! readings. `choose` selects levels and smoothness. `doubt` estimates how well the data determine
 //! the weights. `stages` identifies the thermal body in front of the operators; `heated` looks for
-//! one that nobody asked for. `chosen` hands choices on to other fits. `monotone` tells data that
-//! the model cannot follow.
+//! one that nobody asked for, and `warm_start` for the drive before a recording. `chosen` hands
+//! choices on to other fits. `monotone` tells data that the model cannot follow.
 
 mod changed;
 mod choose;

@@ -114,13 +114,23 @@ impl Delay {
     /// The inputs that act at each sample of a series, from those given there.
     #[must_use]
     pub fn acting<'i>(&self, input: &'i [f64], time: Option<&[f64]>) -> Cow<'i, [f64]> {
+        self.acting_after(None, input, time)
+    }
+
+    /// As [`Delay::acting`], where another input than the first one was held before.
+    pub(crate) fn acting_after<'i>(
+        &self,
+        rest: Option<f64>,
+        input: &'i [f64],
+        time: Option<&[f64]>,
+    ) -> Cow<'i, [f64]> {
         let (late, Some(&first)) = (self.on(time), input.first()) else {
             return Cow::Borrowed(input);
         };
         if late == 0 {
             return Cow::Borrowed(input);
         }
-        let before = std::iter::repeat_n(first, late);
+        let before = std::iter::repeat_n(rest.unwrap_or(first), late);
         Cow::Owned(
             before
                 .chain(input.iter().copied())

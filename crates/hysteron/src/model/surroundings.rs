@@ -70,14 +70,9 @@ impl Model {
         }
         match input.iter().position(|x| !x.is_finite()) {
             Some(index) => Err(CoreError::InputNotFinite { index }.into()),
-            None => {
-                let acting = self.delay().acting(input, surroundings.time);
-                Ok(after_rest(
-                    acting,
-                    self.delay().on(surroundings.time),
-                    surroundings.rest,
-                ))
-            }
+            None => Ok(self
+                .delay()
+                .acting_after(surroundings.rest, input, surroundings.time)),
         }
     }
 
@@ -262,17 +257,6 @@ impl<'a> Surroundings<'a> {
             (n, Sample { input, dt, load })
         }))
     }
-}
-
-/// The inputs that act, of which the first `late` are still the rest.
-fn after_rest(acting: Cow<'_, [f64]>, late: usize, rest: Option<f64>) -> Cow<'_, [f64]> {
-    let Some(rest) = rest.filter(|_| late > 0) else {
-        return acting;
-    };
-    let mut acting = acting.into_owned();
-    let early = late.min(acting.len());
-    acting[..early].fill(rest);
-    Cow::Owned(acting)
 }
 
 /// The same error with the index of the sample, where it is one of a sample.

@@ -9,8 +9,8 @@ use crate::recording::Recording;
 use crate::series::{branch_spans, usual_tolerance};
 
 /// Tells how much the `repeats` changed, and widens the band of a model with confidence so that it
-/// holds 95 % of their samples, too. Weights and offset stay as they are. The start of each repeat is estimated from
-/// its beginning.
+/// holds 95 % of their samples, too. Weights and offset stay as they are. The start of each repeat
+/// is estimated from its beginning.
 ///
 /// # Errors
 /// As [`crate::evaluate_from`].

@@ -1,10 +1,10 @@
 //! Identifies the stages around the operators, together with the weights.
 //!
-//! `body` is the thermal body, `latent` the heat that it loses to the operators, `load` the shift by
-//! the load, `spacing` the place of the levels, `ring`, `after` and `curve` those behind the
-//! operators, from the last to the first, and `lag` a lag that nobody asked for. Each finds its
-//! constants and hands on recordings as the next stage sees them. Most of them are judged by
-//! `blocks`. `nelder_mead` is the search of body, heat and ring.
+//! `body` is the thermal body, `warm` where it began in each recording, `latent` the heat that it
+//! loses to the operators, `load` the shift by the load, `spacing` the place of the levels, `ring`,
+//! `after` and `curve` those behind the operators, from the last to the first, and `lag` a lag that
+//! nobody asked for. Each finds its constants and hands on recordings as the next stage sees them.
+//! Most of them are judged by `blocks`. `nelder_mead` is the search of body, heat and ring.
 
 mod after;
 pub(super) mod blocks;

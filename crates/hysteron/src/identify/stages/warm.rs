@@ -1,8 +1,8 @@
 //! Finds the drive at which a body was at rest before each recording, together with the body.
 //!
 //! A wire that was warm, or a drive that begins with the recording, moves the output for some time
-//! constants as no drive in the recording does. A body sought without it fits the beginning in place
-//! of the rest.
+//! constants as no drive in the recording does. A body that is sought without this fits the
+//! beginning badly, and all else with it.
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
@@ -28,13 +28,14 @@ const STEPS: usize = 60;
 /// wrong at the beginning, it makes a little better.
 const WORTH: f64 = 0.9;
 
-/// Weights and rests are found in turn, so often at most, and as long as the error falls to this part.
+/// Weights and rests are found in turn, so often at most, and as long as the error falls to this
+/// part.
 const ROUNDS: usize = 6;
 const FALLS: f64 = 0.9;
 
 /// What a first look found.
 pub(super) struct Look {
-    /// The error at rest with the first drives, and with the best of a few rests for all recordings.
+    /// The error at rest with the first drives, and with the best of a few rests.
     pub(super) at_first: f64,
     pub(super) rested: f64,
     /// The logarithms of the common time constants there.
@@ -86,9 +87,8 @@ pub(super) fn rested(
 }
 
 impl Search<'_> {
-    /// A look with a common time constant on a coarse grid, and there with a few rests. What a wrong
-    /// rest leaves takes longer than the body does, so the next shorter time constant is looked at as
-    /// well.
+    /// A look with a common time constant on a coarse grid, and there with a few rests. A wrong rest
+    /// makes the body look slower than it is, so the next shorter time constant is tried as well.
     pub(super) fn look(&self) -> Result<Look> {
         let ([tau], rmse) = self.best_of_grid(common)?;
         let mut look = Look {
@@ -138,8 +138,7 @@ impl Search<'_> {
         Ok(kept.map_or(now, |(_, told)| told))
     }
 
-    /// The recordings, all with a rest at this share of the range of drives, but for those whose rest
-    /// is known.
+    /// The recordings with a rest at this share of the range of drives. One that is known stays.
     fn resting(&self, share: f64) -> Vec<Recording> {
         let ranges = self.recordings.iter().map(|one| range(&one.input));
         let all = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
